@@ -1,0 +1,14 @@
+"""Articulated bodies: the model, reading and writing it as text, the catalogue.
+
+=================  =====================================================
+Body               a tree of segments; poses -> frames, joints
+named_body         a body of the catalogue, at a height
+read_body          a body from a TOML file
+catalogue          the names there are
+=================  =====================================================
+"""
+
+from muybridge.body.load import catalogue, named_body, parse_body, read_body
+from muybridge.body.model import Body, BodyArrays, Landmark, Rotation, Segment, Shape
+
+__all__ = ["Body", "BodyArrays", "Landmark", "Rotation", "Segment", "Shape", "catalogue", "named_body", "parse_body", "read_body"]

@@ -1,0 +1,17 @@
+"""What every test may use: where the real recordings are, and nothing else."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+SHARED = Path(__file__).resolve().parents[2] / "shared"
+
+
+def shared_data(name: str) -> Path:
+    """The folder `name` of real recordings beside the checkout; skips the calling test where it is absent."""
+    folder = SHARED / "data" / name
+    if not folder.is_dir():
+        pytest.skip(f"the recording {name!r} is not beside this checkout")
+    return folder
