@@ -1,0 +1,117 @@
+"""Turn the raw mask into the person: no speckle, no pinholes, and no forearm lost.
+
+"Keep the largest component" cuts off a forearm that a dark sleeve separates from the body. So fragments near the main
+component stay: near means a gap of few pixels, and not too small.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from muybridge.errors import InputError
+
+
+@dataclass(frozen=True)
+class CleaningConfig:
+    """Settings of the cleaning, in pixels of the mask (defaults: a person of about 200 to 300 rows)."""
+
+    median: int = 3
+    """Side of the median filter, odd; 1 leaves it out."""
+    largest_hole: int = 40
+    """Holes of up to so many pixels are filled; larger ones may be real (between arm and trunk)."""
+    smallest_fragment: int = 20
+    """Components of fewer pixels go."""
+    gap: float = 25.0
+    """Components further than this from the main one go; infinity keeps them all."""
+
+    def __post_init__(self) -> None:
+        if self.median < 1 or self.median % 2 == 0:
+            raise InputError("cleaning median", expected="an odd number, 1 or more", got=str(self.median))
+        if self.largest_hole < 0 or self.smallest_fragment < 0 or self.gap < 0:
+            raise InputError("cleaning sizes", expected="0 or more",
+                             got=f"{self.largest_hole}, {self.smallest_fragment}, {self.gap:g}")  # fmt: skip
+
+
+def clean(mask: NDArray, config: CleaningConfig | None = None, box: tuple[float, float, float, float] | None = None) -> NDArray:
+    """Median, holes, small components, then the main component and the fragments near it.
+
+    Parameters
+    ----------
+    mask : (H, W) bool
+    box : (left, top, right, bottom), pixels, optional
+        Where the person is expected: the main component is the one with most pixels inside, instead of the largest.
+
+    Returns
+    -------
+    (H, W) bool
+    """
+    config = config or CleaningConfig()
+    if config.median > 1:
+        mask = median(mask, config.median)
+    mask = fill_holes(mask, config.largest_hole)
+    mask = drop_small(mask, config.smallest_fragment)
+    return keep_near_main(mask, config.gap, box) if np.isfinite(config.gap) else mask
+
+
+def median(mask: NDArray, side: int) -> NDArray:
+    """Majority over side x side pixels."""
+    import cv2
+
+    return cv2.medianBlur(mask.astype(np.uint8), side).astype(bool)
+
+
+def fill_holes(mask: NDArray, largest: int) -> NDArray:
+    """Fill background regions of up to `largest` pixels that do not touch the border."""
+    import cv2
+
+    _, label, stats, _ = cv2.connectedComponentsWithStats((~mask).astype(np.uint8), connectivity=4)
+    hole = stats[:, cv2.CC_STAT_AREA] <= largest
+    hole[0] = False  # label 0 is the foreground here
+    hole[np.unique(np.concatenate([label[0], label[-1], label[:, 0], label[:, -1]]))] = False
+    return mask | hole[label]
+
+
+def drop_small(mask: NDArray, smallest: int) -> NDArray:
+    """Drop 8-connected components of fewer than `smallest` pixels."""
+    import cv2
+
+    _, label, stats, _ = cv2.connectedComponentsWithStats(mask.astype(np.uint8), connectivity=8)
+    keep = stats[:, cv2.CC_STAT_AREA] >= smallest
+    keep[0] = False
+    return keep[label]
+
+
+def keep_near_main(mask: NDArray, gap: float, box: tuple[float, float, float, float] | None = None) -> NDArray:
+    """The main component and every component whose nearest pixel is within `gap` pixels of it."""
+    import cv2
+
+    count, label = cv2.connectedComponents(mask.astype(np.uint8), connectivity=8)
+    if count < 3:
+        return mask
+    votes = label if box is None else label * near(np.ones_like(mask), box)
+    pixels = np.bincount(votes.ravel(), minlength=count)[1:]
+    if not pixels.any():
+        pixels = np.bincount(label.ravel(), minlength=count)[1:]
+    main = 1 + int(np.argmax(pixels))
+    distance = cv2.distanceTransform((label != main).astype(np.uint8), cv2.DIST_L2, 5)
+    nearby = np.zeros(count, bool)
+    nearby[np.unique(label[(distance <= gap) & mask])] = True
+    return nearby[label]
+
+
+def near(mask: NDArray, box: tuple[float, float, float, float], margin: float = 0.0) -> NDArray:
+    """The mask inside a box widened by `margin` on all sides, and nothing outside it.
+
+    Parameters
+    ----------
+    mask : (H, W) bool
+    box : (left, top, right, bottom), pixels, edges included
+    margin : float, pixels
+    """
+    left, top, right, bottom = box
+    rows, columns = np.ogrid[: mask.shape[0], : mask.shape[1]]
+    inside = (columns >= left - margin) & (columns <= right + margin)
+    return mask & inside & (rows >= top - margin) & (rows <= bottom + margin)

@@ -1,0 +1,60 @@
+"""The chain picture -> reduction -> background model -> shadows -> cleaning -> mask, itself a background model."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from numpy.typing import NDArray
+
+from muybridge.segmentation.cleaning import CleaningConfig, clean
+from muybridge.segmentation.pictures import reduce_image
+from muybridge.segmentation.registry import BackgroundModel, build_background
+from muybridge.segmentation.shadows import ShadowConfig, shadow_mask
+
+
+@dataclass(frozen=True)
+class Segmenter:
+    """Full-size pictures in, masks at `factor` times the size out.
+
+    The settings are fixed; the model inside may learn on line where its own settings say so.
+    """
+
+    model: BackgroundModel
+    """Trained at `factor` times the pictures' size."""
+    factor: float = 0.25
+    """Reduction before anything else, in (0, 1]; masks have the reduced size."""
+    shadows: ShadowConfig | None = None
+    """None leaves shadows in."""
+    cleaning: CleaningConfig | None = None
+    """None leaves the mask as the model gave it."""
+
+    def apply(self, image: NDArray, box: tuple[float, float, float, float] | None = None) -> NDArray:
+        """Foreground (H', W') bool of a picture (H, W) or (H, W, 3) uint8.
+
+        `box`: where the person is expected (left, top, right, bottom), pixels of the mask; see `cleaning.clean`.
+        """
+        picture = reduce_image(image, self.factor)
+        background = getattr(self.model, "background", None)
+        mask = self.model.apply(picture)
+        if self.shadows is not None and background is not None:
+            mask = mask & ~shadow_mask(picture, background, self.shadows)
+        return mask if self.cleaning is None else clean(mask, self.cleaning, box)
+
+
+def build_segmenter(
+    name: str = "plate",
+    pictures: Sequence[NDArray] = (),
+    *,
+    factor: float = 0.25,
+    shadows: ShadowConfig | None = ShadowConfig(),  # noqa: B008 - frozen
+    cleaning: CleaningConfig | None = CleaningConfig(),  # noqa: B008 - frozen
+    **settings: Any,
+) -> Segmenter:
+    """A segmenter of the model `name`, trained on full-size pictures of the empty scene.
+
+    Grey pictures keep their shadows unless `shadows` is passed on purpose: without colour the test also eats dark clothes.
+    """
+    reduced = [reduce_image(picture, factor) for picture in pictures]
+    return Segmenter(build_background(name, reduced, **settings), factor, shadows, cleaning)
