@@ -1,0 +1,13 @@
+"""Files in and out, one module per format. Everything is read and written a frame at a time, in constant memory.
+
+=====================  ==============================================================================
+`video`                `open_pictures`, `open_masks`: a camera's pictures from a video or from numbered images
+`video_reader`         `VideoReader`: frame-exact reading by timestamp
+`image_sequence`       `ImageSequence`: `CAM1/image%04d.bmp` and `CAM1/*.png`
+`video_writer`         `VideoWriter`: H.264 that browsers play
+`synchronise`          `check_synchronised`, `synchronised`: several cameras as one stream
+`run_folder`           `joints.csv`, `pose.csv`, `run.json`
+`run_log`              the log that `--resume` continues from
+`disk`                 `disk_errors`, `replaced_on_success`: one line for a full disk; whole files or none
+=====================  ==============================================================================
+"""
