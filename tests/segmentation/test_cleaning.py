@@ -70,3 +70,15 @@ def test_near_keeps_the_box_with_its_edges():
 def test_senseless_settings(settings):
     with pytest.raises(InputError):
         CleaningConfig(**settings)
+
+
+def test_cleaning_a_part_equals_cleaning_the_whole():
+    """`clean` works inside the foreground's bounds only; the steps one after the other on the whole mask must agree."""
+    rng = np.random.default_rng(0)
+    for _ in range(20):
+        mask = np.zeros((60, 50), bool)
+        top, left = rng.integers(0, 30, 2)
+        mask[top : top + 25, left : left + 20] = rng.random((25, 20)) < 0.7
+        config, box = CleaningConfig(median=1, largest_hole=3, smallest_fragment=4, gap=2), (20.0, 20.0, 30.0, 30.0)
+        whole = keep_near_main(drop_small(fill_holes(mask, 3), 4), 2, box)
+        assert np.array_equal(clean(mask, config, box), whole)

@@ -92,9 +92,10 @@ def test_gaussian_learns_mean_and_variance_of_each_pixel():
 
 
 def test_gaussian_false_alarms_are_as_rare_as_the_normal_law_says():
-    """Largest of 3 channels beyond 3 sd: 1 - 0.9973^3 = 0.81 %. Standard error over 24,000 pixels 0.06 %; the sd is estimated
-    from 400 pictures and pictures are rounded, which moves the rate by less than a tenth of itself."""
+    """Largest of 3 channels beyond 3 sd: 1 - 0.9973^3 = 0.81 %. Standard error over 24,000 pixels 0.06 %; the sd is
+    estimated from 400 pictures and pictures are rounded, which moves the rate by less than a tenth of itself."""
     rng = np.random.default_rng(5)
+
     def draw(count):
         return list(np.clip(np.rint(120 + rng.normal(0, 6, (count, HEIGHT, WIDTH, 3))), 0, 255).astype(np.uint8))
 
@@ -115,7 +116,7 @@ def test_on_line_update_follows_light_but_does_not_learn_the_person():
         picture, truth = with_person(plain, colour=(30, 30, 240))
         mask, stuck = learning.apply(picture), fixed.apply(picture)
     assert mask[truth].all() and mask[~truth].mean() < 0.02
-    assert stuck[~truth].mean() > 0.9  # negative control: 40 grey values brighter is foreground to a model that cannot learn
+    assert stuck[~truth].mean() > 0.9  # negative control: a model that cannot learn sees 40 grey values more everywhere
 
 
 def test_too_few_pictures_for_a_spread():

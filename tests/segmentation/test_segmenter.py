@@ -6,7 +6,15 @@ import numpy as np
 import pytest
 
 from muybridge.errors import InputError
-from muybridge.segmentation import ShadowConfig, build_segmenter, mask_scores, median_picture, reduce_image, shadow_mask
+from muybridge.segmentation import (
+    ShadowConfig,
+    build_segmenter,
+    mask_scores,
+    median_picture,
+    reduce_image,
+    remove_shadows,
+    shadow_mask,
+)
 
 
 def scene(rng, height=120, width=160):
@@ -62,6 +70,8 @@ def test_the_shadow_test_takes_the_shadow_and_leaves_the_person():
     found = shadow_mask(*small)
     assert found[shadow[::4, ::4]].mean() > 0.95
     assert found[person[::4, ::4]].mean() < 0.05
+    mask = np.random.default_rng(0).random(found.shape) < 0.5
+    assert np.array_equal(remove_shadows(mask, *small), mask & ~found)
 
 
 def test_grey_shadows_need_an_even_ratio():
@@ -69,7 +79,8 @@ def test_grey_shadows_need_an_even_ratio():
     empty = np.repeat(np.repeat(rng.integers(80, 200, (15, 20)), 8, 0), 8, 1).astype(float)
     picture = empty.copy()
     picture[20:60, 20:60] *= 0.7
-    picture[20:60, 80:120] = 0.7 * rng.permutation(empty[20:60, 80:120].ravel()).reshape(40, 40)  # as dark, other texture
+    other_texture = rng.permutation(empty[20:60, 80:120].ravel()).reshape(40, 40)
+    picture[20:60, 80:120] = 0.7 * other_texture
     shadow = shadow_mask(picture.astype(np.uint8), empty.astype(np.uint8))
     assert shadow[25:55, 25:55].all()
     assert shadow[25:55, 85:115].mean() < 0.05
@@ -87,7 +98,7 @@ def test_the_chain_finds_the_person_without_the_shadow():
     scores = mask_scores(mask, truth)
     # a 3 x 3 median costs the person's 4 corners of 120 pixels; nothing else may go
     assert scores["recall"] > 0.96 and scores["iou"] > 0.9
-    with_shadow = build_segmenter("plate", [empty], shadows=None).apply(picture)
+    with_shadow = build_segmenter("plate", [empty], shadows=False).apply(picture)
     assert mask_scores(with_shadow, truth)["iou"] < 0.8  # negative control: the shadow is a third of the person
 
 
@@ -104,3 +115,17 @@ def test_scores_of_known_masks():
     truth[:2], mask[1:] = True, True
     assert mask_scores(mask, truth) == {"recall": 0.5, "precision": 4 / 12, "iou": 0.25}
     assert mask_scores(~mask & mask, truth & ~truth)["iou"] == 1
+
+
+def test_shadows_are_removed_in_colour_only_unless_said():
+    empty, *_ = scene(np.random.default_rng(5))
+    assert build_segmenter("plate", [empty]).shadows == ShadowConfig()
+    assert build_segmenter("plate", [empty[..., 0]]).shadows is None
+    assert build_segmenter("plate", [empty[..., 0]], shadows=True).shadows == ShadowConfig()
+    assert build_segmenter("plate", [empty], shadows=False).shadows is None
+
+
+@pytest.mark.parametrize("settings", [{"darkest": 1.2}, {"chroma_change": -1}])
+def test_senseless_shadow_settings(settings):
+    with pytest.raises(InputError):
+        ShadowConfig(**settings)

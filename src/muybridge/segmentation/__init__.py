@@ -8,7 +8,7 @@ name           a pixel is foreground where                      choose it when
 `hue_key`      its hue is not the screen's                      the person stands before a blue or green screen
 =============  ==============================================  =================================================
 
-A model alone is `model.apply(image)`; a `Segmenter` adds what comes before (reduction) and after it (shadows, cleaning).
+A model alone is `model.apply(image)`; a `Segmenter` adds what comes before (reduction) and after (shadows, cleaning).
 """
 
 from muybridge.segmentation.cleaning import CleaningConfig, clean, near
@@ -19,7 +19,7 @@ from muybridge.segmentation.plate import PlateBackground, PlateConfig
 from muybridge.segmentation.registry import BACKGROUND_MODELS, BackgroundModel, build_background
 from muybridge.segmentation.scores import mask_scores
 from muybridge.segmentation.segmenter import Segmenter, build_segmenter
-from muybridge.segmentation.shadows import ShadowConfig, shadow_mask
+from muybridge.segmentation.shadows import ShadowConfig, remove_shadows, shadow_mask
 
 __all__ = [
     "BACKGROUND_MODELS",
@@ -40,5 +40,6 @@ __all__ = [
     "median_picture",
     "near",
     "reduce_image",
+    "remove_shadows",
     "shadow_mask",
 ]

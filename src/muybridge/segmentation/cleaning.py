@@ -13,6 +13,9 @@ from numpy.typing import NDArray
 
 from muybridge.errors import InputError
 
+Box = tuple[float, float, float, float]
+"""(left, top, right, bottom), pixels of the mask."""
+
 
 @dataclass(frozen=True)
 class CleaningConfig:
@@ -24,7 +27,7 @@ class CleaningConfig:
     """Holes of up to so many pixels are filled; larger ones may be real (between arm and trunk)."""
     smallest_fragment: int = 20
     """Components of fewer pixels go."""
-    gap: float = 25.0
+    gap: float = 15.0
     """Components further than this from the main one go; infinity keeps them all."""
 
     def __post_init__(self) -> None:
@@ -35,7 +38,7 @@ class CleaningConfig:
                              got=f"{self.largest_hole}, {self.smallest_fragment}, {self.gap:g}")  # fmt: skip
 
 
-def clean(mask: NDArray, config: CleaningConfig | None = None, box: tuple[float, float, float, float] | None = None) -> NDArray:
+def clean(mask: NDArray, config: CleaningConfig | None = None, box: Box | None = None) -> NDArray:
     """Median, holes, small components, then the main component and the fragments near it.
 
     Parameters
@@ -51,9 +54,28 @@ def clean(mask: NDArray, config: CleaningConfig | None = None, box: tuple[float,
     config = config or CleaningConfig()
     if config.median > 1:
         mask = median(mask, config.median)
-    mask = fill_holes(mask, config.largest_hole)
-    mask = drop_small(mask, config.smallest_fragment)
-    return keep_near_main(mask, config.gap, box) if np.isfinite(config.gap) else mask
+    rows, columns = _bounds(mask)
+    part = mask[rows, columns]
+    if not part.any():
+        return mask
+    part = drop_small(fill_holes(part, config.largest_hole), config.smallest_fragment)
+    if np.isfinite(config.gap):
+        left, top = columns.start, rows.start
+        inside = None if box is None else (box[0] - left, box[1] - top, box[2] - left, box[3] - top)
+        part = keep_near_main(part, config.gap, inside)
+    out = np.zeros_like(mask)
+    out[rows, columns] = part
+    return out
+
+
+def _bounds(mask: NDArray) -> tuple[slice, slice]:
+    """Rows and columns of all foreground and one pixel around it: what lies outside cannot change."""
+
+    def span(used: NDArray) -> slice:
+        first, last = int(np.argmax(used)), len(used) - int(np.argmax(used[::-1]))
+        return slice(max(0, first - 1), last + 1)
+
+    return span(mask.any(axis=1)), span(mask.any(axis=0))
 
 
 def median(mask: NDArray, side: int) -> NDArray:
@@ -84,7 +106,7 @@ def drop_small(mask: NDArray, smallest: int) -> NDArray:
     return keep[label]
 
 
-def keep_near_main(mask: NDArray, gap: float, box: tuple[float, float, float, float] | None = None) -> NDArray:
+def keep_near_main(mask: NDArray, gap: float, box: Box | None = None) -> NDArray:
     """The main component and every component whose nearest pixel is within `gap` pixels of it."""
     import cv2
 
@@ -102,7 +124,7 @@ def keep_near_main(mask: NDArray, gap: float, box: tuple[float, float, float, fl
     return nearby[label]
 
 
-def near(mask: NDArray, box: tuple[float, float, float, float], margin: float = 0.0) -> NDArray:
+def near(mask: NDArray, box: Box, margin: float = 0.0) -> NDArray:
     """The mask inside a box widened by `margin` on all sides, and nothing outside it.
 
     Parameters

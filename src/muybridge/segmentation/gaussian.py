@@ -1,11 +1,12 @@
 """A normal distribution for each pixel of the empty scene.
 
-N pictures without the person give every pixel and channel its mean and standard deviation; what lies further from the mean than
-a few standard deviations is foreground (the thesis' section 5.1 asks for N > 100 and 2 to 3 standard deviations).
+N pictures without the person give every pixel and channel its mean and standard deviation; what lies further
+from the mean than a few standard deviations is foreground (the thesis' section 5.1 asks for N > 100 and 2 to 3
+standard deviations).
 
 Differences from the paper: the standard deviation has a floor, because a pixel that never changed by chance would
-otherwise call every later change foreground; the on-line update leaves foreground alone, so a person who stands still is
-not learnt into the background.
+otherwise call every later change foreground; the on-line update leaves foreground alone, so a person who
+stands still is not learnt into the background.
 """
 
 from __future__ import annotations
@@ -58,9 +59,12 @@ class GaussianBackground:
     def train(cls, pictures: Sequence[NDArray], config: GaussianConfig | None = None) -> GaussianBackground:
         """Learn from pictures of the empty scene, each (H, W) or (H, W, 3) uint8, all of one size."""
         if len(pictures) < MINIMUM_PICTURES:
-            raise InputError("empty pictures for the gaussian background",
-                             expected=f"{MINIMUM_PICTURES} or more (better 100)", got=str(len(pictures)),
-                             remedy="give a clip of the empty scene, or use the plate model with one picture")  # fmt: skip
+            raise InputError(
+                "empty pictures for the gaussian background",
+                expected=f"{MINIMUM_PICTURES} or more (better 100)",
+                got=str(len(pictures)),
+                remedy="give a clip of the empty scene, or use the plate model with one picture",
+            )
         shape = with_channels(pictures[0]).shape
         total, squares = np.zeros(shape), np.zeros(shape)
         for picture in pictures:

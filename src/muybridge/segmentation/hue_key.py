@@ -1,7 +1,7 @@
 """Blue screen: background is whatever has the screen's hue (the thesis' section 5.1).
 
-Differences from the paper, which thresholds hue alone: hue means nothing where there is hardly any colour, so a floor on
-saturation and on brightness is added; set both to 0 for the paper's rule.
+Differences from the paper, which thresholds hue alone: hue means nothing where there is hardly any colour, so a
+floor on saturation and on brightness is added; set both to 0 for the paper's rule.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """The difference to a plate: one picture of the empty scene.
 
-`lab` measures it in CIE Lab with lightness at half weight, so that a change of light counts less than a change of colour;
-`rgb` takes the plain Euclidean difference of the three channels. A grey picture has one channel and one difference.
+`lab` measures it in CIE Lab with lightness at half weight, so that a change of light counts less than a change of
+colour; `rgb` takes the plain Euclidean difference of the three channels. A grey picture has one channel and one difference.
 """
 
 from __future__ import annotations
@@ -14,8 +14,24 @@ from numpy.typing import NDArray
 from muybridge.errors import InputError
 from muybridge.segmentation.pictures import check_same_shape, with_channels
 
-DEFAULT_THRESHOLDS = {"lab": 12.0, "rgb": 20.0, "grey": 14.0}
-"""At a quarter of the resolution, where noise has averaged out; about twice that at full resolution."""
+DEFAULT_THRESHOLDS = {"rgb": 20.0, "lab": 7.0, "grey": 8.0}
+"""For a quarter of the resolution (grey: a half), where noise has averaged out; about twice that at full resolution.
+
+Means of 24 real pictures from four cameras against capsules round detected joints, shadows removed, cleaned:
+
+==========  ======  =========  ====
+space       recall  precision  IoU
+==========  ======  =========  ====
+rgb 16      0.84    0.78       0.67
+rgb 20      0.82    0.82       0.70
+rgb 30      0.78    0.85       0.69
+lab 5       0.83    0.79       0.68
+lab 7       0.80    0.84       0.69
+lab 12      0.73    0.87       0.66
+==========  ======  =========  ====
+
+`lab` lets less changing light through (0.65 against 0.63 in the worst camera), `rgb` loses less of dark clothes.
+"""
 
 
 @dataclass(frozen=True)
@@ -35,7 +51,7 @@ class PlateConfig:
         if self.threshold is not None and self.threshold <= 0:
             raise InputError("plate background threshold", expected="above 0", got=f"{self.threshold:g}")
         if self.lightness_weight < 0:
-            raise InputError("plate background lightness_weight", expected="0 or more", got=f"{self.lightness_weight:g}")
+            raise InputError("plate lightness_weight", expected="0 or more", got=f"{self.lightness_weight:g}")
 
 
 class PlateBackground:

@@ -1,4 +1,4 @@
-"""The background models by name. A row here makes a model appear in jobs, on the command line and in the conformance tests."""
+"""The background models by name. A row here makes a model appear in jobs, commands and conformance tests."""
 
 from __future__ import annotations
 
@@ -60,8 +60,12 @@ def build_background(name: str, pictures: Sequence[NDArray] = (), **settings: An
     if unknown:
         raise InputError(f"setting of the {name} background", expected=" or ".join(known), got=", ".join(unknown))
     if entry.needs_pictures and not len(pictures):
-        raise InputError(f"{name} background", expected="pictures of the empty scene", got="none",
-                         remedy="give a plate or a clip without the person, or use hue_key before a blue screen")  # fmt: skip
+        raise InputError(
+            f"{name} background",
+            expected="pictures of the empty scene",
+            got="none",
+            remedy="give a plate or a clip without the person, or use hue_key before a blue screen",
+        )
     return entry.build(pictures, entry.config(**settings))
 
 

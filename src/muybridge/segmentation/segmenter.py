@@ -8,10 +8,10 @@ from typing import Any
 
 from numpy.typing import NDArray
 
-from muybridge.segmentation.cleaning import CleaningConfig, clean
+from muybridge.segmentation.cleaning import Box, CleaningConfig, clean
 from muybridge.segmentation.pictures import reduce_image
 from muybridge.segmentation.registry import BackgroundModel, build_background
-from muybridge.segmentation.shadows import ShadowConfig, shadow_mask
+from muybridge.segmentation.shadows import ShadowConfig, remove_shadows
 
 
 @dataclass(frozen=True)
@@ -30,7 +30,7 @@ class Segmenter:
     cleaning: CleaningConfig | None = None
     """None leaves the mask as the model gave it."""
 
-    def apply(self, image: NDArray, box: tuple[float, float, float, float] | None = None) -> NDArray:
+    def apply(self, image: NDArray, box: Box | None = None) -> NDArray:
         """Foreground (H', W') bool of a picture (H, W) or (H, W, 3) uint8.
 
         `box`: where the person is expected (left, top, right, bottom), pixels of the mask; see `cleaning.clean`.
@@ -39,7 +39,7 @@ class Segmenter:
         background = getattr(self.model, "background", None)
         mask = self.model.apply(picture)
         if self.shadows is not None and background is not None:
-            mask = mask & ~shadow_mask(picture, background, self.shadows)
+            mask = remove_shadows(mask, picture, background, self.shadows)
         return mask if self.cleaning is None else clean(mask, self.cleaning, box)
 
 
@@ -48,13 +48,27 @@ def build_segmenter(
     pictures: Sequence[NDArray] = (),
     *,
     factor: float = 0.25,
-    shadows: ShadowConfig | None = ShadowConfig(),  # noqa: B008 - frozen
+    shadows: ShadowConfig | bool | None = None,
     cleaning: CleaningConfig | None = CleaningConfig(),  # noqa: B008 - frozen
     **settings: Any,
 ) -> Segmenter:
     """A segmenter of the model `name`, trained on full-size pictures of the empty scene.
 
-    Grey pictures keep their shadows unless `shadows` is passed on purpose: without colour the test also eats dark clothes.
+    Parameters
+    ----------
+    pictures : sequence of (H, W) or (H, W, 3) uint8
+    factor : float
+        Reduction, in (0, 1].
+    shadows : ShadowConfig or bool, optional
+        None: removed from colour pictures only. Without colour the test costs more of the person than it gains.
+    cleaning : CleaningConfig, optional
+        None leaves it out.
+    settings
+        Fields of the model's config.
     """
     reduced = [reduce_image(picture, factor) for picture in pictures]
+    if shadows is None:
+        shadows = all(picture.ndim == 3 and picture.shape[2] == 3 for picture in reduced)
+    if isinstance(shadows, bool):
+        shadows = ShadowConfig() if shadows else None
     return Segmenter(build_background(name, reduced, **settings), factor, shadows, cleaning)

@@ -1,8 +1,8 @@
 """Shadows: foreground pixels that are only a darker background.
 
 A shadow scales the light of what it falls on and leaves its colour nearly alone. So a pixel is shadow where brightness
-over the plate's brightness lies in a range below and about 1 and the chromaticity (b, g, r over their sum) has hardly moved.
-A grey picture has no colour; there the ratio must be even over a small window, because a shadow keeps
+over the plate's brightness lies in a range below and about 1 and the chromaticity (b, g, r over their sum) has hardly
+moved. A grey picture has no colour; there the ratio must be even over a small window, because a shadow keeps
 the texture of the ground and a person does not.
 """
 
@@ -55,16 +55,39 @@ def shadow_mask(image: NDArray, background: NDArray, config: ShadowConfig | None
         True on shadow, and on unchanged background; combine it as `mask & ~shadow_mask(...)`.
     """
     config = config or ShadowConfig()
-    empty = with_channels(background).astype(np.float32)
-    picture = check_same_shape(image, empty.shape).astype(np.float32)
-    light, light_before = picture.mean(axis=2), empty.mean(axis=2)
+    empty = with_channels(background)
+    picture = check_same_shape(image, empty.shape)
+    if picture.shape[2] == 3:
+        return _only_darker(picture.astype(np.float32), empty.astype(np.float32), config)
+    light, light_before = picture[..., 0].astype(np.float32), empty[..., 0].astype(np.float32)
     ratio = light / np.maximum(light_before, 1)
-    darker = (ratio >= config.darkest) & (ratio <= config.brightest) & (light_before >= config.minimum_brightness)
+    return _in_range(ratio, light_before, config) & (_local_spread(ratio) <= config.grey_spread)
+
+
+def remove_shadows(mask: NDArray, image: NDArray, background: NDArray, config: ShadowConfig | None = None) -> NDArray:
+    """The mask without its shadow: `mask & ~shadow_mask(...)`, in colour worked out on the mask's pixels alone."""
+    config = config or ShadowConfig()
+    empty = with_channels(background)
+    picture = check_same_shape(image, empty.shape)
     if picture.shape[2] == 1:
-        return darker & (_local_spread(ratio) <= config.grey_spread)
-    before = empty / np.maximum(3 * light_before, 1)[..., None]
-    change = picture / np.maximum(3 * light, 1)[..., None] - before
-    return darker & ((change * change).sum(axis=2) <= config.chroma_change**2)
+        return mask & ~shadow_mask(picture, empty, config)
+    kept = mask.copy()
+    kept[mask] = ~_only_darker(picture[mask].astype(np.float32), empty[mask].astype(np.float32), config)
+    return kept
+
+
+def _only_darker(picture: NDArray, empty: NDArray, config: ShadowConfig) -> NDArray:
+    """(..., 3) colours now and before -> (...) bool."""
+    light, light_before = (colours[..., 0] + colours[..., 1] + colours[..., 2] for colours in (picture, empty))
+    ratio = light / np.maximum(light_before, 1)
+    before = empty / np.maximum(light_before, 1)[..., None]
+    change = picture / np.maximum(light, 1)[..., None] - before
+    return _in_range(ratio, light_before / 3, config) & (np.square(change).sum(axis=-1) <= config.chroma_change**2)
+
+
+def _in_range(ratio: NDArray, light_before: NDArray, config: ShadowConfig) -> NDArray:
+    bright_enough = light_before >= config.minimum_brightness
+    return (ratio >= config.darkest) & (ratio <= config.brightest) & bright_enough
 
 
 def _local_spread(ratio: NDArray) -> NDArray:
