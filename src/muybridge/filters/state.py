@@ -1,0 +1,219 @@
+"""What every filter shares: settings, the state between frames, the diagnostics of a step, and how a step ends.
+
+A method adds its own settings by inheriting from `CommonConfig`, and its own memory by inheriting from `State`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, fields, replace
+from typing import Literal, Protocol, TypeVar
+
+import numpy as np
+
+from muybridge.errors import InputError
+from muybridge.filters.dynamics import checked_limits, reflect
+from muybridge.filters.particles import ESTIMATES, FloatArray, Weights, standard_deviation
+from muybridge.filters.resampling import RESAMPLING
+
+COLLAPSE_REMEDY = (
+    "no particle has a likelihood above zero: start again from a known pose, widen the dynamics noise, "
+    "or check that the observation shows the subject"
+)
+
+
+class Likelihood(Protocol):
+    """One frame's observation, frozen."""
+
+    def log_prob(self, poses: FloatArray) -> FloatArray:
+        """Log likelihood up to a constant. poses : (N, D); returns (N,), both float64; -inf is impossible."""
+        ...
+
+
+@dataclass(frozen=True, kw_only=True)
+class CommonConfig:
+    """Settings every method has."""
+
+    particles: int = 500  # N; Du (2005), section 7.1
+    estimate: Literal["mean", "maximum"] = "maximum"  # (3.25) | (3.24), (6.18)
+    resampling: str = "multinomial"  # section 3.5; see resampling.RESAMPLING
+    sharpness: float = 1.0  # K multiplies the log likelihood; 1 takes the likelihood as it is given
+
+    def __post_init__(self) -> None:
+        require("particles", self.particles >= 3, "at least 3", self.particles)
+        require("estimate", self.estimate in ESTIMATES, " | ".join(ESTIMATES), self.estimate)
+        require("resampling", self.resampling in RESAMPLING, " | ".join(RESAMPLING), self.resampling)
+        require("sharpness", np.isfinite(self.sharpness) and self.sharpness > 0, "finite and above 0", self.sharpness)
+
+
+def require(name: str, holds: bool, expected: str, got: object) -> None:
+    """Raise InputError about the setting `name` unless it holds."""
+    if not holds:
+        raise InputError(f"filter setting {name!r}", expected=expected, got=repr(got))
+
+
+@dataclass(frozen=True, eq=False)
+class State:
+    """What the next frame needs. All float64, in the state's units.
+
+    particles : (N, D); log_weights : (N,), normalised; estimate : (D,); velocity : (D,), per frame, (6.19).
+    """
+
+    particles: FloatArray
+    log_weights: FloatArray
+    estimate: FloatArray
+    velocity: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class Info:
+    """Diagnostics of one step, the same for every method; a list that a method does not have is empty.
+
+    Attributes
+    ----------
+    ess : float
+        Effective sample size of the final weights.
+    survival_rate, exponents, acceptance : (L,) float64
+        Per layer: effective fraction, power of the likelihood, share of accepted moves.
+    evaluations, invalid : int
+        Likelihoods asked for, and how many of the answers were NaN or +inf (treated as impossible).
+    log_likelihood : float
+        Of the estimate, as the likelihood gave it (not sharpened); -inf when collapsed.
+    spread_before, spread_after : (D,) float64
+        Standard deviation of the predicted particles, and of the weighted ones.
+    collapsed : bool
+        No particle was possible; the state is the one before.
+    remedy : str
+        What to do about it; empty when all is well.
+    """
+
+    ess: float
+    survival_rate: FloatArray
+    exponents: FloatArray
+    acceptance: FloatArray
+    evaluations: int
+    invalid: int
+    log_likelihood: float
+    spread_before: FloatArray
+    spread_after: FloatArray
+    collapsed: bool = False
+    remedy: str = ""
+
+
+class CountingLikelihood:
+    """A likelihood that counts what it is asked, and turns NaN and +inf into -inf."""
+
+    def __init__(self, likelihood: Likelihood) -> None:
+        self._likelihood = likelihood
+        self.evaluations = 0
+        self.invalid = 0
+
+    def log_prob(self, poses: FloatArray) -> FloatArray:
+        """poses : (N, D); returns (N,), both float64."""
+        if len(poses) == 0:
+            return np.empty(0)
+        log_likelihoods = np.array(self._likelihood.log_prob(poses), dtype=np.float64)
+        if log_likelihoods.shape != (len(poses),):
+            raise InputError("likelihood.log_prob", expected=f"shape ({len(poses)},)", got=f"{log_likelihoods.shape}")
+        broken = np.isnan(log_likelihoods) | (log_likelihoods == np.inf)
+        log_likelihoods[broken] = -np.inf
+        self.evaluations += len(poses)
+        self.invalid += int(broken.sum())
+        return log_likelihoods
+
+
+def initial_state(
+    rng: np.random.Generator,
+    mean: FloatArray,
+    sd: FloatArray,
+    particles: int,
+    lower: FloatArray | None = None,
+    upper: FloatArray | None = None,
+) -> State:
+    """N(mean, diag(sd^2)) folded into the limits, equal weights, at rest.
+
+    mean, sd, lower, upper : (D,) float64, the state's units; sd of zero keeps a component fixed.
+    """
+    mean, sd = np.array(mean, dtype=np.float64), np.array(sd, dtype=np.float64)
+    if mean.ndim != 1 or not np.isfinite(mean).all():
+        raise InputError("initial mean", expected="shape (D,), finite", got=f"shape {mean.shape}, {mean}")
+    if sd.shape != mean.shape or not (np.isfinite(sd).all() and (sd >= 0).all()):
+        raise InputError("initial sd", expected=f"shape {mean.shape}, finite and not negative", got=str(sd))
+    low, high = checked_limits(lower, upper, mean.size)
+    mean = np.clip(mean, low, high)
+    cloud = reflect(mean + sd * rng.standard_normal((particles, mean.size)), low, high)
+    return State(cloud, np.full(particles, -np.log(particles)), mean, np.zeros_like(mean))
+
+
+StateT = TypeVar("StateT", bound=State)
+
+
+def conclude(
+    state: StateT,
+    predicted: FloatArray,
+    particles: FloatArray,
+    log_likelihoods: FloatArray,
+    log_weights: FloatArray,
+    counted: CountingLikelihood,
+    config: CommonConfig,
+    *,
+    survival_rate: Sequence[float] | None = None,
+    exponents: Sequence[float] = (),
+    acceptance: Sequence[float] = (),
+    scores: FloatArray | None = None,
+    remedy: str = "",
+) -> tuple[StateT, Info]:
+    """The end of every step: estimate (3.24) or (3.25), velocity (6.19), diagnostics; the old state if all collapsed.
+
+    predicted, particles : (N, D); log_likelihoods, log_weights : (N,); scores : (N,), what the maximum is taken of, for
+    methods whose particles end with equal weights (None: the weights). All float64.
+    """
+    weights = Weights(log_weights)
+    log_likelihood = -np.inf
+    if not weights.collapsed:
+        ranking = weights if scores is None or config.estimate == "mean" else Weights(scores)
+        estimate = ESTIMATES[config.estimate](particles, ranking)
+        velocity = estimate - state.estimate  # (6.19)
+        log_likelihood = _log_likelihood_of_estimate(estimate, ranking, log_likelihoods, counted, config)
+        state = replace(state, particles=particles, log_weights=weights.log, estimate=estimate, velocity=velocity)
+    info = Info(
+        ess=weights.ess,
+        survival_rate=np.array([weights.survival_rate] if survival_rate is None else survival_rate, dtype=np.float64),
+        exponents=np.array(exponents, dtype=np.float64),
+        acceptance=np.array(acceptance, dtype=np.float64),
+        evaluations=counted.evaluations,
+        invalid=counted.invalid,
+        log_likelihood=float(log_likelihood),
+        spread_before=np.std(predicted, axis=0),
+        spread_after=standard_deviation(particles, weights),
+        collapsed=weights.collapsed,
+        remedy=COLLAPSE_REMEDY if weights.collapsed else remedy,
+    )
+    return state, info
+
+
+def _log_likelihood_of_estimate(
+    estimate: FloatArray,
+    ranking: Weights,
+    log_likelihoods: FloatArray,
+    counted: CountingLikelihood,
+    config: CommonConfig,
+) -> float:
+    """Known for a particle; one more evaluation for a mean."""
+    if config.estimate == "maximum":
+        return float(log_likelihoods[int(np.argmax(ranking.log))])
+    return float(counted.log_prob(estimate[None])[0])
+
+
+def state_to_arrays(state: State) -> dict[str, FloatArray]:
+    """The state as named arrays, for a log that a run can be resumed from."""
+    return {field.name: np.asarray(getattr(state, field.name)) for field in fields(state)}
+
+
+def state_from_arrays(arrays: Mapping[str, FloatArray], kind: type[StateT] = State) -> StateT:  # type: ignore[assignment]
+    """The inverse of `state_to_arrays`, to the bit. `kind` is the method's own State where it has one."""
+    names = [field.name for field in fields(kind)]
+    missing = [name for name in names if name not in arrays]
+    if missing:
+        raise InputError("saved filter state", expected=", ".join(names), got=f"no {', '.join(missing)}")
+    return kind(**{name: np.array(arrays[name]) for name in names})
