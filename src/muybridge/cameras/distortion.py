@@ -66,7 +66,8 @@ def undistort(points: np.ndarray, coefficients: np.ndarray) -> np.ndarray:
                 break
         residual = np.abs(distort(straight, coefficients) - target).max(axis=-1)
         r2 = np.sum(straight * straight, axis=-1)
-        solved = (residual <= RESIDUAL_LIMIT * (1 + np.abs(target).max(axis=-1))) & (r2 < fold_radius_squared(coefficients))
+        close = residual <= RESIDUAL_LIMIT * (1 + np.abs(target).max(axis=-1))
+        solved = close & (r2 < fold_radius_squared(coefficients))
     straight[~solved] = np.nan
     return straight
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -42,7 +43,7 @@ class Camera:
         what = f"camera {self.name!r}"
         if not isinstance(self.name, str) or not self.name:
             raise InputError("camera name", expected="a word", got=repr(self.name))
-        object.__setattr__(self, "size", _checked_size(what, self.size))
+        object.__setattr__(self, "size", checked_size(what, self.size))
         coefficients = np.atleast_1d(np.asarray(self.distortion))
         if coefficients.shape == (4,):
             coefficients = np.append(coefficients, 0.0)
@@ -143,6 +144,12 @@ class Camera:
         """The camera with its picture cropped or padded at the right and bottom; nothing is scaled."""
         return replace(self, size=(width, height))
 
+    def in_world(self, rotation: np.ndarray, translation: np.ndarray | None = None) -> Camera:
+        """The same camera described in another world, X_new = Q X + s with Q (3, 3) a rotation and s (3,) metres."""
+        new_rotation = self.rotation @ np.asarray(rotation, dtype=np.float64).T
+        shift = np.zeros(3) if translation is None else np.asarray(translation, dtype=np.float64)
+        return replace(self, rotation=new_rotation, translation=self.translation - new_rotation @ shift)
+
     def renamed(self, name: str) -> Camera:
         """The same camera under another name."""
         return replace(self, name=name)
@@ -194,7 +201,8 @@ class Rig:
         return Rig(tuple(self[name] for name in names))
 
 
-def _checked_size(what: str, size: tuple[int, int]) -> tuple[int, int]:
+def checked_size(what: str, size: Any) -> tuple[int, int]:
+    """Width and height as whole numbers of pixels."""
     expected = "width and height, two whole numbers > 0"
     try:
         width, height = size
