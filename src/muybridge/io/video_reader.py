@@ -169,8 +169,6 @@ class VideoReader:
             warnings.warn(self.damage, stacklevel=3)
 
 
-
-
 def _frame_rate(timestamps: np.ndarray, stated: float) -> float:
     """Frames per second: the stated mean rate where the timestamps bear it out, else theirs."""
     if len(timestamps) < 2:
