@@ -6,8 +6,7 @@ OUT ?= runs
 
 BIN := $(VENV)/bin
 READY := $(VENV)/.ready
-# Compiled kernels are kept here, so that only the first run waits for them; threads inside BLAS only get in the way.
-export NUMBA_CACHE_DIR ?= $(CURDIR)/.cache/numba
+# Threads inside BLAS only get in the way of those over particles. Compiled kernels are kept beside their sources.
 export OPENBLAS_NUM_THREADS ?= 1
 # Where this is set, every import compiles anew and takes three times as long.
 unexport PYTHONDONTWRITEBYTECODE
@@ -61,4 +60,4 @@ $(READY): requirements.txt pyproject.toml
 	@touch $@
 
 clean:
-	rm -rf $(VENV) .cache build dist .pytest_cache .mypy_cache .ruff_cache
+	rm -rf $(VENV) build dist .pytest_cache .mypy_cache .ruff_cache

@@ -1,0 +1,5 @@
+"""`python -m muybridge`: the same as `muybridge`."""
+
+from muybridge.cli import main
+
+main()

@@ -1,0 +1,55 @@
+"""The commands by name, and what ends them: a code, a line about bad input, or Ctrl-C."""
+
+from __future__ import annotations
+
+import os
+import sys
+
+from cyclopts import App, CycloptsError
+
+from muybridge import __version__
+from muybridge.cli.reporting import BAD_INPUT, DONE, INTERRUPTED
+from muybridge.errors import MuybridgeError
+
+#: name -> module and function, and the line that --help shows without importing it.
+COMMANDS = {
+    "track": ("track:track", "Track the person that a job file describes."),
+    "evaluate": ("evaluate:evaluate", "Compare a run with the truth: error per joint in mm."),
+    "doctor": ("doctor:doctor", "Say what is installed and whether it works."),
+}
+
+
+def build() -> App:
+    """The application; commands are imported when called."""
+    app = App(
+        name="muybridge",
+        help="Bayesian, model-based tracking of people in video: 3D poses with error bars.",
+        version=__version__,
+    )
+    for name, (target, line) in COMMANDS.items():
+        app.command(f"muybridge.cli.{target}", name=name, help=line)
+    return app
+
+
+def run(arguments: list[str]) -> int:
+    """The exit code of the command; expected trouble becomes one line on stderr."""
+    # Threads inside BLAS fight with those over particles; this must be set before numpy is imported.
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    try:
+        code = build()(arguments, exit_on_error=False, print_error=False, result_action="return_value")
+    except (MuybridgeError, CycloptsError) as error:
+        return _complain(str(error), BAD_INPUT)
+    except KeyboardInterrupt as interrupt:
+        return _complain(str(interrupt) or "interrupted; what was finished is kept", INTERRUPTED)
+    except BrokenPipeError:
+        # The reader of our output has gone (`| head`): nothing is wrong, and nothing more can be said.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return DONE
+    except OSError as error:
+        return _complain(f"{error.filename or 'file'}: {error.strerror or error}", BAD_INPUT)
+    return code if isinstance(code, int) else DONE
+
+
+def _complain(message: str, code: int) -> int:
+    print("muybridge: " + " ".join(message.split()), file=sys.stderr)
+    return code

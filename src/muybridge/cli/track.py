@@ -1,0 +1,61 @@
+"""`muybridge track JOB.toml`."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+from cyclopts import Parameter
+
+from muybridge.cli.reporting import DEFAULT_REPORTING, DONE, LOST, Reporting
+
+if TYPE_CHECKING:
+    from muybridge.io.job import Job
+
+Overrides = Annotated[list[str] | None, Parameter(name="--set", negative=())]
+
+
+def track(
+    job: Path,
+    /,
+    *,
+    out: Path | None = None,
+    seed: int | None = None,
+    set_: Overrides = None,
+    reporting: Reporting = DEFAULT_REPORTING,
+) -> int:
+    """Track the person that a job file describes.
+
+    Parameters
+    ----------
+    job
+        The job, a TOML file; see docs/job.md.
+    out
+        Where the run folder is made; runs/NAME where absent.
+    seed
+        Wins over the job's seed.
+    set_
+        One setting of the job, KEY=VALUE, such as filter.particles=1000; may be repeated.
+    """
+    from muybridge.io.job import check_settings, read
+
+    overrides = [*(set_ or []), *([] if seed is None else [f"seed={seed}"])]
+    described = read(job, overrides)
+    check_settings(described)
+    return run_and_tell(described, out or Path("runs") / described.name, reporting)
+
+
+def run_and_tell(described: Job, out: Path, reporting: Reporting) -> int:
+    """Track, and say what came of it; 3 where the person was lost at the end."""
+    from muybridge.tracking import run
+
+    try:
+        with reporting.progress(described.name) as progress:
+            summary = run(described, out, progress=progress)
+    except KeyboardInterrupt:
+        raise KeyboardInterrupt(f"interrupted; the finished frames are kept in {out}") from None
+    record = asdict(summary)
+    reporting.say(f"{summary.frames} frames, {summary.status}; results in {out}")
+    reporting.finish({"out": out, **record})
+    return LOST if summary.status == "lost" else DONE
