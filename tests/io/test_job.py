@@ -161,15 +161,22 @@ class Config:
     survival: float = 0.1
 
 
+PRINTED, WORKING = Config(survival=0.5), Config(particles=300)
+
+
 class TestSettings:
     @pytest.fixture(autouse=True)
     def one_method(self, monkeypatch: pytest.MonkeyPatch) -> None:
         from muybridge import filters
 
-        monkeypatch.setattr(filters, "METHODS", {"annealed": SimpleNamespace(Config=Config)}, raising=False)
+        monkeypatch.setattr(
+            filters, "METHODS", {"annealed": SimpleNamespace(PRINTED=PRINTED, WORKING=WORKING)}, raising=False
+        )
 
-    def test_the_jobs_settings_replace_defaults(self, path: Path) -> None:
+    def test_the_jobs_settings_replace_the_presets(self, path: Path) -> None:
         assert job.filter_config(job.read(path)) == Config(particles=200)
+        assert job.filter_config(job.read(path, ["filter.preset=printed"])) == Config(particles=200, survival=0.5)
+        assert job.filter_config(job.read(path, ["filter={name='annealed'}"])) == WORKING
 
     @pytest.mark.parametrize(
         ("override", "words"),

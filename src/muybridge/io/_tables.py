@@ -31,16 +31,17 @@ def convert(table: Mapping[str, Any], kind: type[Converted], folder: Path, sourc
         raise _explain(error, kind, source) from error
 
 
-def check_settings(settings: Mapping[str, Any], config: type[Converted], source: str) -> Converted:
-    """A frozen dataclass of settings with some of its defaults replaced."""
+def replaced(config: Converted, settings: Mapping[str, Any], source: str) -> Converted:
+    """A frozen dataclass with some of its fields replaced; the settings' names and types are checked."""
     known = [field.name for field in dataclasses.fields(config)]  # type: ignore[arg-type]
     for key in settings:
         if key not in known:
             raise unknown(source, key, known)
     try:
-        return msgspec.convert(settings, config)
+        typed = msgspec.convert(dict(settings), type(config))
     except msgspec.ValidationError as error:
-        raise _explain(error, config, source) from error
+        raise _explain(error, type(config), source) from error
+    return dataclasses.replace(config, **{key: getattr(typed, key) for key in settings})  # type: ignore[type-var]
 
 
 def unknown(source: str, name: str, known: Sequence[str]) -> InputError:

@@ -111,6 +111,8 @@ class FilterInput(Table):
     """`[filter]`: a method of `muybridge.filters.METHODS`; every other key is a setting of that method."""
 
     name: str = "guided"
+    preset: Literal["working", "printed"] = "working"
+    """What the settings not given here are: those measured to work, or those of the paper."""
     settings: dict[str, Any] = {}
 
 
@@ -201,13 +203,15 @@ def check_settings(job: Job) -> None:
 
 
 def filter_config(job: Job) -> Any:
-    """The Config of the job's filter method, with the job's settings in place of its defaults."""
+    """The Config of the job's filter method: its preset, with the job's settings in place of the preset's."""
     from muybridge.filters import METHODS
 
     name = job.filter.name
     if name not in METHODS:
         raise _tables.unknown("filter.name", name, list(METHODS))
-    return _tables.check_settings(job.filter.settings, METHODS[name].Config, f"filter {name}")
+    method = METHODS[name]
+    preset = method.PRINTED if job.filter.preset == "printed" else method.WORKING
+    return _tables.replaced(preset, job.filter.settings, f"filter {name}")
 
 
 def background_config(camera: CameraInput) -> Any:
@@ -223,7 +227,7 @@ def background_config(camera: CameraInput) -> Any:
     if model.needs_pictures and background.file is None and background.empty is None:
         raise InputError(f"camera {camera.name}: {background.kind} background", expected="the empty scene", got="none",
                          remedy="give file, or empty = [first, last]")  # fmt: skip
-    return _tables.check_settings(background.settings, model.config, f"camera {camera.name}: {background.kind}")
+    return _tables.replaced(model.config(), background.settings, f"camera {camera.name}: {background.kind}")
 
 
 def dumps(job: Job, folder: Path | None = None) -> str:
