@@ -31,8 +31,8 @@ test: lint layers
 	$(BIN)/python -m pytest
 
 lint: $(READY)
-	$(BIN)/ruff check src tests requirements
-	$(BIN)/ruff format --check src tests requirements
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
 
 types: $(READY)
 	$(BIN)/mypy
@@ -47,7 +47,7 @@ bench: $(READY)
 	$(BIN)/muybridge bench --out $(OUT)/bench
 
 requirements: $(READY)
-	$(PYTHON) requirements/compile.py
+	$(PYTHON) scripts/compile_requirements.py
 
 $(READY): requirements.txt pyproject.toml
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \

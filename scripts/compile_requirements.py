@@ -29,7 +29,7 @@ def main() -> None:
         backend.write_text(BUILD_BACKEND)
         lines = compile_requirements(python, backend)
     (ROOT / "requirements.txt").write_text(HEADER + lines)
-    print(f"requirements.txt: {lines.count('==')} packages, {lines.count('--hash')} hashes", file=sys.stderr)  # noqa: T201
+    print(f"requirements.txt: {lines.count('==')} packages, {lines.count('--hash')} hashes", file=sys.stderr)
 
 
 def compile_requirements(python: Path, backend: Path) -> str:
