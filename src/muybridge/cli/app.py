@@ -14,6 +14,7 @@ from muybridge.errors import MuybridgeError
 #: name -> module and function, and the line that --help shows without importing it.
 COMMANDS = {
     "track": ("track:track", "Track the person that a job file describes."),
+    "job": ("job:job", "Write a job for a folder in a known layout."),
     "evaluate": ("evaluate:evaluate", "Compare a run with the truth: error per joint in mm."),
     "doctor": ("doctor:doctor", "Say what is installed and whether it works."),
 }

@@ -26,14 +26,14 @@ Unit = Literal["m", "cm", "mm"]
 
 
 class CalibrationInput(Table):
-    """`[calibration]`: one file for all cameras, or one a camera in the order of the cameras."""
+    """`[calibration]`: one file for all cameras (or a folder of files), or a list of files."""
 
     file: Path | None = None
     files: tuple[Path, ...] = ()
-    format: str | None = None
-    """Only where the file's name does not tell."""
     unit: Unit | None = None
-    """Of the translations; the format's own where absent."""
+    """Of the lengths; the format's own where absent."""
+    up: Literal["z", "y", "x", "-z", "-y", "-x"] = "z"
+    """The axis of the file's world that points up."""
     corrected: bool = False
     """Correct the cameras by the residual shift that tracking finds, instead of only reporting it."""
 
