@@ -1,7 +1,7 @@
 """The difference to a plate: one picture of the empty scene.
 
 `lab` measures it in CIE Lab with lightness at half weight, so that a change of light counts less than a change of
-colour; `rgb` takes the plain Euclidean difference of the three channels. A grey picture has one channel and one difference.
+colour; `rgb` takes the plain Euclidean difference of the three channels. A grey picture has one channel only.
 """
 
 from __future__ import annotations
