@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from itertools import chain, islice
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +20,9 @@ from muybridge.errors import InputError
 _PACKETS_ARE_NOT_FRAMES = frozenset({"vp8"})
 # A container that states no frame count is called truncated where this much of its stated duration is missing.
 _MISSING_SECONDS = 0.5
+# AVI stores no times, and those FFmpeg makes up are wrong where frames are coded out of order; this many frames tell.
+_STORES_NO_TIMES = frozenset({"avi"})
+_PROBED_FRAMES = 64
 
 
 @dataclass(frozen=True)
@@ -61,6 +65,7 @@ class Decoder:
         from av.video.reformatter import VideoReformatter
 
         self.path, self.threads, self.format = path, threads, "bgr24" if colour else "gray"
+        self.damaged = False
         self._reformatter = VideoReformatter()
         self._open()
 
@@ -95,20 +100,30 @@ class Decoder:
         """Decode forward; broken packets are skipped, and the end of readable data is the end."""
         import av
 
-        packets = self.container.demux(self.stream)
-        while True:
+        # A packet of None at the end flushes what the decoder still holds.
+        for packet in chain(self.packets(), [None]):
             try:
-                packet = next(packets, None)
-            except av.FFmpegError:
-                packet = None
-            try:
-                # A packet of None flushes what the decoder still holds.
-                decoded = packet.decode() if packet is not None else self.stream.codec_context.decode(None)
+                decoded = self.stream.codec_context.decode(packet)
             except (av.FFmpegError, EOFError):
-                decoded = []
+                continue
             yield from (frame for frame in decoded if not frame.is_corrupt)
-            if packet is None:
+
+    def packets(self) -> Iterator[Any]:
+        """Demux forward, past damage where the container can be picked up behind it; `damaged` says so."""
+        import av
+
+        progress = True
+        while progress:
+            progress = False
+            try:
+                for packet in self.container.demux(self.stream):
+                    if packet.size:
+                        progress = True
+                        self.damaged |= packet.is_corrupt
+                        yield packet
                 return
+            except av.FFmpegError:
+                self.damaged = True
 
     def frames(self, index: FrameIndex) -> Iterator[tuple[int, Any]]:
         """Yield (number, frame) in ascending order from where the container stands."""
@@ -161,40 +176,43 @@ def index_frames(path: Path, threads: int = 1) -> FrameIndex:
     """Learn every frame's time: by demuxing where the container can be believed, by decoding everything where not."""
     with Decoder(path, threads) as decoder:
         index = _index_by_demuxing(decoder)
+        decoder_format = decoder.container.format.name
         doubtful = decoder.stream.codec_context.name in _PACKETS_ARE_NOT_FRAMES
-    if index.timed and not index.damaged and not doubtful and index.packets >= index.expected:
-        return index
+    if decoder_format in _STORES_NO_TIMES:
+        doubtful |= not _times_hold(path, threads, index)
+    if index.timed and not doubtful:
+        whole = not index.damaged and index.packets >= index.expected
+        return index if whole else _without_unreadable_end(path, threads, index)
     with Decoder(path, threads) as decoder:
         return _index_by_decoding(decoder, index)
 
 
-def _index_by_demuxing(decoder: Decoder) -> FrameIndex:
-    import av
+def _without_unreadable_end(path: Path, threads: int, index: FrameIndex) -> FrameIndex:
+    """Leave out the frames after the last that decodes; gaps before it stay, so that frames keep their numbers."""
+    with Decoder(path, threads) as decoder:
+        last = max((frame.pts for frame in decoder.raw_frames() if frame.pts is not None), default=-1)
+    return replace(index, ticks=index.ticks[index.ticks <= last], key_ticks=index.key_ticks[index.key_ticks <= last])
 
+
+def _index_by_demuxing(decoder: Decoder) -> FrameIndex:
     times: list[int] = []
     keys: list[int] = []
-    packets, timed, damaged = 0, True, False
-    try:
-        for packet in decoder.container.demux(decoder.stream):
-            if not packet.size:
-                continue
-            packets += 1
-            damaged |= packet.is_corrupt
-            timed &= packet.pts is not None
-            if packet.is_discard or packet.pts is None:
-                continue
-            if packet.is_keyframe:
-                keys.append(packet.pts)
-            if keys:  # nothing can be decoded before the first key frame
-                times.append(packet.pts)
-    except av.FFmpegError:
-        damaged = True
+    packets, timed = 0, True
+    for packet in decoder.packets():
+        packets += 1
+        timed &= packet.pts is not None
+        if packet.is_discard or packet.pts is None:
+            continue
+        if packet.is_keyframe:
+            keys.append(packet.pts)
+        if keys:  # nothing can be decoded before the first key frame
+            times.append(packet.pts)
     ticks = np.unique(np.array(times, np.int64))
     if keys:
         ticks = ticks[ticks >= keys[0]]
     time_base = float(decoder.stream.time_base or 1.0)
     expected = _promised_frames(decoder, ticks, time_base)
-    return FrameIndex(ticks, np.unique(np.array(keys, np.int64)), time_base, timed, expected, packets, damaged)
+    return FrameIndex(ticks, np.unique(np.array(keys, np.int64)), time_base, timed, expected, packets, decoder.damaged)
 
 
 def _promised_frames(decoder: Decoder, ticks: np.ndarray, time_base: float) -> int:
@@ -209,6 +227,13 @@ def _promised_frames(decoder: Decoder, ticks: np.ndarray, time_base: float) -> i
     shown = (ticks[-1] - ticks[0]) * time_base
     missing = duration - shown - 1 / float(stream.average_rate)
     return round(duration * float(stream.average_rate)) if missing > _MISSING_SECONDS else 0
+
+
+def _times_hold(path: Path, threads: int, index: FrameIndex) -> bool:
+    """Whether the first decoded frames carry the times that their packets promised."""
+    with Decoder(path, threads) as decoder:
+        times = [frame.pts for frame in islice(decoder.raw_frames(), _PROBED_FRAMES)]
+    return times == index.ticks[: len(times)].tolist()
 
 
 def _index_by_decoding(decoder: Decoder, index: FrameIndex) -> FrameIndex:

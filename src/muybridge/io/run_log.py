@@ -1,8 +1,8 @@
 """The log that `--resume` continues from: fixed-size binary records, each with a checksum.
 
 Layout (little-endian): magic `MUYBLOG1`, uint32 length and uint32 crc32 of the header, the header as JSON, then
-records: uint32 crc32 over (uint64 record number, payload), payload. A process may be killed at any moment: whole records stay,
-a damaged tail is dropped. Nothing is ever pickled.
+records: uint32 crc32 over (uint64 record number, payload), payload. A process may be killed at any moment: whole
+records stay, a damaged tail is dropped. Nothing is ever pickled.
 """
 
 from __future__ import annotations

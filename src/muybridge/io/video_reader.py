@@ -47,6 +47,7 @@ class VideoReader:
         self.path, self.threads, self.colour = Path(path), threads, colour
         self.name = str(path)
         self.damage = ""
+        self._warned: set[str] = set()
         self._decoder: Decoder | None = None
         self._ahead: Iterator[tuple[int, np.ndarray]] = iter(())
         self._next = -1
@@ -86,13 +87,14 @@ class VideoReader:
         due, previous = start, None
         with Decoder(self.path, self.threads, self.colour) as decoder:
             for index, picture in self._decode_from(decoder, start):
+                if index > due:
+                    self._warn(f"frame {due} could not be decoded; its neighbour is shown in such places")
                 for missing in range(due, index):
-                    self._warn(f"frame {missing} could not be decoded; its neighbour was shown instead")
                     yield missing, float(self.timestamps[missing]), picture if previous is None else previous
                 yield index, float(self.timestamps[index]), picture
                 due, previous = index + 1, picture
         if due < self.frame_count:
-            self._warn(f"{due} of {self.frame_count} frames could be decoded")
+            self._warn(f"decoding ended after {due} of {self.frame_count} frames")
 
     def read(self, index: int) -> np.ndarray:
         """The picture of one frame, exactly; reading on from the frame before does not seek."""
@@ -164,9 +166,11 @@ class VideoReader:
             self._warn(f"damaged: {self.frame_count} of {max(index.packets, index.expected)} frames can be read")
 
     def _warn(self, line: str) -> None:
-        if not self.damage:
-            self.damage = f"{self.name}: {line}"
-            warnings.warn(self.damage, stacklevel=3)
+        kind = line.split()[0]
+        if kind not in self._warned:
+            self._warned.add(kind)
+            self.damage = f"{self.damage}; {line}" if self.damage else f"{self.name}: {line}"
+            warnings.warn(f"{self.name}: {line}", stacklevel=3)
 
 
 def _frame_rate(timestamps: np.ndarray, stated: float) -> float:
