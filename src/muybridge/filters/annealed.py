@@ -34,12 +34,14 @@ import numpy as np
 from muybridge.filters.dynamics import Dynamics
 from muybridge.filters.particles import FloatArray, Weights, mean_estimate
 from muybridge.filters.resampling import resample
-from muybridge.filters.schedule import exponent_for_survival
+from muybridge.filters.schedule import exponent_for_survival, powered
 from muybridge.filters.state import (
     CommonConfig,
     CountingLikelihood,
     Info,
+    Layers,
     Likelihood,
+    Population,
     State,
     conclude,
     initial_state,
@@ -99,29 +101,27 @@ def step(
     counted = CountingLikelihood(likelihood)
     particles, weights = state.particles, Weights(state.log_weights)
     velocity: FloatArray | None = state.velocity
-    survival, exponents = [], []
+    layers = Layers()
     for layer, noise_scale in enumerate(_noise_scales(config, particles.shape[1])):
         selected = resample(rng, weights, config.particles, config.resampling)
-        centre = mean_estimate(particles, weights)
-        particles = particles[selected]
         if layer > 0:
-            particles = _contract(particles, centre, np.where(noise_scale > 0, config.contraction, 1.0))
-        particles = dynamics.sample(rng, particles, velocity, noise_scale)
+            particles = _contracted(particles, weights, np.where(noise_scale > 0, config.contraction, 1.0))
+        particles = dynamics.sample(rng, particles[selected], velocity, noise_scale)
         if layer == 0:
             predicted, velocity = particles, None  # the prediction is made once
         log_likelihoods = counted.log_prob(particles)
-        exponents.append(_exponent(log_likelihoods, layer, config))
-        weights = Weights(exponents[-1] * log_likelihoods)
-        survival.append(weights.survival_rate)
+        exponent = _exponent(log_likelihoods, layer, config)
+        weights = Weights(powered(log_likelihoods, exponent))
+        layers.append(weights.survival_rate, exponent)
         if weights.collapsed:
             break
     log_weights = np.full(len(particles), -np.inf) if weights.collapsed else weights.log
-    return conclude(state, predicted, particles, log_likelihoods, log_weights, counted, config,
-                    survival_rate=survival, exponents=exponents)  # fmt: skip
+    population = Population(particles, log_likelihoods)
+    return conclude(state, predicted, population, log_weights, counted, config, layers)
 
 
 def _noise_scales(config: Config, size: int) -> Iterator[FloatArray]:
-    """(D,) noise scale of each layer: shrunk for every earlier layer that perturbed the component; 0 outside the block."""
+    """(D,) noise scale of each layer: shrunk once for every earlier layer that perturbed it; 0 outside the block."""
     visits = np.zeros(size)
     for layer in range(config.layers):
         perturbed = np.ones(size, dtype=bool)
@@ -132,8 +132,11 @@ def _noise_scales(config: Config, size: int) -> Iterator[FloatArray]:
         visits[perturbed] += 1
 
 
-def _contract(particles: FloatArray, centre: FloatArray, factor: FloatArray) -> FloatArray:
-    """Move particles (N, D) towards the centre (D,); stays within any box that holds both."""
+def _contracted(particles: FloatArray, weights: Weights, factor: FloatArray) -> FloatArray:
+    """Distances to the mean times factor (D,); particles (N, D) stay within any box that holds them."""
+    if (factor == 1.0).all():
+        return particles
+    centre = mean_estimate(particles, weights)
     return centre + factor * (particles - centre)
 
 

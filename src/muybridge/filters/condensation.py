@@ -30,7 +30,17 @@ import numpy as np
 from muybridge.filters.dynamics import Dynamics
 from muybridge.filters.particles import FloatArray, Weights
 from muybridge.filters.resampling import resample
-from muybridge.filters.state import CommonConfig, CountingLikelihood, Info, Likelihood, State, conclude, initial_state
+from muybridge.filters.state import (
+    CommonConfig,
+    CountingLikelihood,
+    Info,
+    Layers,
+    Likelihood,
+    Population,
+    State,
+    conclude,
+    initial_state,
+)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -65,6 +75,8 @@ def step(
     counted = CountingLikelihood(likelihood)
     selected = resample(rng, Weights(state.log_weights), config.particles, config.resampling)  # 1, (3.26)-(3.27)
     particles = dynamics.sample(rng, state.particles[selected], state.velocity)  # 2, (3.20), (3.22)
-    log_likelihoods = counted.log_prob(particles)
-    log_weights = config.sharpness * log_likelihoods  # 3, (3.21)
-    return conclude(state, particles, particles, log_likelihoods, log_weights, counted, config)  # 4, (3.24) or (3.25)
+    population = Population(particles, counted.log_prob(particles))
+    log_weights = config.sharpness * population.log_likelihoods  # 3, (3.21)
+    layers = Layers()
+    layers.append(Weights(log_weights).survival_rate, config.sharpness)
+    return conclude(state, particles, population, log_weights, counted, config, layers)  # 4, (3.24) or (3.25)

@@ -44,6 +44,7 @@ from muybridge.filters.state import (
     CommonConfig,
     CountingLikelihood,
     Info,
+    Layers,
     Likelihood,
     State,
     conclude,
@@ -81,8 +82,8 @@ class Config(CommonConfig):
 
 
 PRINTED = Config()
-# After selection most members are copies and their differences vanish: more layers, larger jumps, a sharper likelihood and
-# spread brought in by the dynamics are what keeps a moving body. 250 x (19 + 1) = 5000 evaluations.
+# After selection most members are copies and their differences vanish: more layers, larger jumps, a sharper
+# likelihood and spread brought in by the dynamics are what keeps a moving body. 250 x (19 + 1) = 5000 evaluations.
 WORKING = Config(particles=250, layers=19, c=0.3, difference_scale=0.27, sharpness=200.0, dynamics_noise=1.0,
                  partners="other_half", estimate="mean", resampling="systematic")  # fmt: skip
 
@@ -108,7 +109,8 @@ def step(
     selected = resample(rng, Weights(state.log_weights), config.particles, config.resampling)  # 1
     predicted = dynamics.sample(rng, state.particles[selected], state.velocity, config.dynamics_noise)  # 2, (6.16)
     population = first = target.measure(predicted)
-    acceptance, survival = [], []
+    log_weights = config.sharpness * population.log_likelihoods
+    layers = Layers()
     for _ in range(config.layers):
         factor = _sigma_factor(population.log_likelihoods, first.log_likelihoods, config)  # (6.20)
         jump = _jumps(rng, predicted.shape, config.c * factor * dynamics.noise_sd, config)
@@ -116,20 +118,18 @@ def step(
         population, accepted = differential_move(rng, population, target, scale, jump, config.partners)  # (6.12)-(6.13)
         if config.crossover_rate > 0:
             population, _ = exchange_move(rng, population, target, config.crossover_rate)  # (6.11), (6.15)
-        acceptance.append(accepted)
-        survival.append(Weights(config.sharpness * population.log_likelihoods).survival_rate)
-    log_weights = config.sharpness * population.log_likelihoods
-    return conclude(state, predicted, population.particles, population.log_likelihoods, log_weights, counted, config,
-                    survival_rate=survival or None, acceptance=acceptance)  # 3, (6.18), (6.19)  # fmt: skip
+        log_weights = config.sharpness * population.log_likelihoods
+        layers.append(Weights(log_weights).survival_rate, config.sharpness, accepted)
+    return conclude(state, predicted, population, log_weights, counted, config, layers)  # 3, (6.18), (6.19)
 
 
 def _sigma_factor(log_likelihoods: FloatArray, first: FloatArray, config: Config) -> float:
     """What sigma is multiplied by before the next layer: proportional to 1 / sum w^2, (6.20).
 
-    "raw_likelihood": w are the likelihoods themselves, so that a population that fits well jumps less, as the text says.
-    The constant makes the factor 1 for the frame's first population (`first`).
-    "effective_sample_size": w are normalised, so that jumps grow as more particles survive. The constant, 1 / N, makes the
-    factor 1 where all survive.
+    "raw_likelihood": w are the likelihoods themselves, so that a population that fits well jumps less, as the text
+    says. The constant makes the factor 1 for the frame's first population (`first`).
+    "effective_sample_size": w are normalised, so that jumps grow as more particles survive. The constant, 1 / N, makes
+    the factor 1 where all survive.
     """
     if config.adaptation == "off":
         return 1.0

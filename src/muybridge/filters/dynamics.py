@@ -124,7 +124,8 @@ def checked_limits(lower: FloatArray | None, upper: FloatArray | None, size: int
 
 def within(particles: FloatArray, lower: FloatArray, upper: FloatArray) -> NDArray[np.bool_]:
     """(N,) bool: every component of the particle lies within its limits."""
-    return np.all((particles >= lower) & (particles <= upper), axis=1)
+    inside: NDArray[np.bool_] = np.logical_and.reduce((particles >= lower) & (particles <= upper), axis=1)
+    return inside
 
 
 def reflect(particles: FloatArray, lower: FloatArray, upper: FloatArray) -> FloatArray:

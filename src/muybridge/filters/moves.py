@@ -30,29 +30,11 @@ from numpy.typing import NDArray
 from muybridge.filters.dynamics import within
 from muybridge.filters.particles import FloatArray
 from muybridge.filters.resampling import Indices
-from muybridge.filters.state import CountingLikelihood
+from muybridge.filters.schedule import powered
+from muybridge.filters.state import CountingLikelihood, Population
 
 Partners = Literal["all", "other_half"]
 LogPrior = Callable[[FloatArray, Indices], FloatArray]
-
-
-@dataclass(frozen=True, eq=False)
-class Population:
-    """particles : (N, D); log_likelihoods : (N,), not sharpened; both float64."""
-
-    particles: FloatArray
-    log_likelihoods: FloatArray
-
-    def take(self, selected: Indices) -> Population:
-        """The selected members, in that order."""
-        return Population(self.particles[selected], self.log_likelihoods[selected])
-
-    def replace(self, members: Indices, accepted: NDArray[np.bool_], others: Population) -> Population:
-        """`others[i]` in the place of member `members[i]` where `accepted[i]`."""
-        particles, log_likelihoods = self.particles.copy(), self.log_likelihoods.copy()
-        particles[members[accepted]] = others.particles[accepted]
-        log_likelihoods[members[accepted]] = others.log_likelihoods[accepted]
-        return Population(particles, log_likelihoods)
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,9 +59,7 @@ class Target:
 
     def log_density(self, population: Population, members: Indices) -> FloatArray:
         """(M,) log f of a population that stands for `members`."""
-        with np.errstate(invalid="ignore"):  # 0 * -inf: an impossible particle is impossible at any power
-            log_f = self.exponent * population.log_likelihoods
-        log_f = np.where(population.log_likelihoods == -np.inf, -np.inf, log_f)
+        log_f = powered(population.log_likelihoods, self.exponent)
         return log_f if self.log_prior is None else log_f + self.log_prior(population.particles, members)
 
 

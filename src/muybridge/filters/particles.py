@@ -91,7 +91,8 @@ def mean_estimate(particles: FloatArray, weights: Weights) -> FloatArray:
 
 def maximum_estimate(particles: FloatArray, weights: Weights) -> FloatArray:
     """The particle of largest weight, (3.24) and (6.18); the first of equals. particles : (N, D); returns (D,)."""
-    return particles[int(np.argmax(weights.log))].copy()
+    best: FloatArray = particles[int(np.argmax(weights.log))].copy()
+    return best
 
 
 def covariance(particles: FloatArray, weights: Weights) -> FloatArray:
@@ -106,7 +107,7 @@ def covariance(particles: FloatArray, weights: Weights) -> FloatArray:
 
 
 def standard_deviation(particles: FloatArray, weights: Weights) -> FloatArray:
-    """Square root of the covariance's diagonal. particles : (N, D); returns (D,), both float64, in the state's units."""
+    """Square root of the covariance's diagonal. particles : (N, D); returns (D,), both float64, state units."""
     deviations = particles - mean_estimate(particles, weights)
     variance: FloatArray = weights.values @ deviations**2
     return np.sqrt(variance)

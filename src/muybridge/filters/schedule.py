@@ -60,3 +60,9 @@ def _bisect(alive: FloatArray, wanted: float, low: float, high: float) -> float:
             return middle
         low, high = (middle, high) if rate > wanted else (low, middle)
     return 0.5 * (low + high)
+
+
+def powered(log_likelihoods: FloatArray, exponent: float) -> FloatArray:
+    """(N,) float64 log of likelihood ** exponent, where the impossible stays impossible at an exponent of zero too."""
+    possible = log_likelihoods > -np.inf
+    return np.where(possible, exponent * np.where(possible, log_likelihoods, 0.0), -np.inf)

@@ -5,11 +5,12 @@ A method adds its own settings by inheriting from `CommonConfig`, and its own me
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields, replace
 from typing import Literal, Protocol, TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from muybridge.errors import InputError
 from muybridge.filters.dynamics import checked_limits, reflect
@@ -67,7 +68,7 @@ class State:
 
 @dataclass(frozen=True, eq=False)
 class Info:
-    """Diagnostics of one step, the same for every method; a list that a method does not have is empty.
+    """Diagnostics of one step, the same for every method; NaN where a method has no such thing.
 
     Attributes
     ----------
@@ -145,47 +146,90 @@ def initial_state(
     return State(cloud, np.full(particles, -np.log(particles)), mean, np.zeros_like(mean))
 
 
+@dataclass(frozen=True, eq=False)
+class Population:
+    """Measured particles. particles : (N, D); log_likelihoods : (N,), not sharpened; both float64."""
+
+    particles: FloatArray
+    log_likelihoods: FloatArray
+
+    def take(self, selected: NDArray[np.intp]) -> Population:
+        """The selected members, in that order."""
+        return Population(self.particles[selected], self.log_likelihoods[selected])
+
+    def replace(self, members: NDArray[np.intp], accepted: NDArray[np.bool_], others: Population) -> Population:
+        """`others[i]` in the place of member `members[i]` where `accepted[i]`."""
+        particles, log_likelihoods = self.particles.copy(), self.log_likelihoods.copy()
+        particles[members[accepted]] = others.particles[accepted]
+        log_likelihoods[members[accepted]] = others.log_likelihoods[accepted]
+        return Population(particles, log_likelihoods)
+
+
+@dataclass
+class Layers:
+    """What a step notes of its layers on the way; becomes part of Info. NaN stands for what a method does not have."""
+
+    rows: list[tuple[float, float, float]] = field(default_factory=list)
+
+    def append(self, survival_rate: float, exponent: float = np.nan, acceptance: float = np.nan) -> None:
+        """Note one layer."""
+        self.rows.append((survival_rate, exponent, acceptance))
+
+    @property
+    def columns(self) -> FloatArray:
+        """(3, L) float64: survival rate, exponent, acceptance."""
+        return np.array(self.rows, dtype=np.float64).reshape(-1, 3).T
+
+
 StateT = TypeVar("StateT", bound=State)
 
 
 def conclude(
     state: StateT,
     predicted: FloatArray,
-    particles: FloatArray,
-    log_likelihoods: FloatArray,
+    population: Population,
     log_weights: FloatArray,
     counted: CountingLikelihood,
     config: CommonConfig,
+    layers: Layers,
     *,
-    survival_rate: Sequence[float] | None = None,
-    exponents: Sequence[float] = (),
-    acceptance: Sequence[float] = (),
     scores: FloatArray | None = None,
     remedy: str = "",
 ) -> tuple[StateT, Info]:
     """The end of every step: estimate (3.24) or (3.25), velocity (6.19), diagnostics; the old state if all collapsed.
 
-    predicted, particles : (N, D); log_likelihoods, log_weights : (N,); scores : (N,), what the maximum is taken of, for
-    methods whose particles end with equal weights (None: the weights). All float64.
+    Parameters
+    ----------
+    predicted : (N, D) float64
+        The particles before the measurement.
+    log_weights : (N,) float64
+        Of the population; all -inf says that it collapsed.
+    scores : (N,) float64
+        What the maximum is taken of, for methods whose particles end with equal weights. None: the weights.
+    remedy : str
+        For trouble short of collapse.
     """
     weights = Weights(log_weights)
     log_likelihood = -np.inf
     if not weights.collapsed:
         ranking = weights if scores is None or config.estimate == "mean" else Weights(scores)
-        estimate = ESTIMATES[config.estimate](particles, ranking)
+        estimate = ESTIMATES[config.estimate](population.particles, ranking)
         velocity = estimate - state.estimate  # (6.19)
-        log_likelihood = _log_likelihood_of_estimate(estimate, ranking, log_likelihoods, counted, config)
-        state = replace(state, particles=particles, log_weights=weights.log, estimate=estimate, velocity=velocity)
+        log_likelihood = _log_likelihood_of_estimate(estimate, ranking, population.log_likelihoods, counted, config)
+        state = replace(
+            state, particles=population.particles, log_weights=weights.log, estimate=estimate, velocity=velocity
+        )
+    survival_rate, exponents, acceptance = layers.columns
     info = Info(
         ess=weights.ess,
-        survival_rate=np.array([weights.survival_rate] if survival_rate is None else survival_rate, dtype=np.float64),
-        exponents=np.array(exponents, dtype=np.float64),
-        acceptance=np.array(acceptance, dtype=np.float64),
+        survival_rate=survival_rate,
+        exponents=exponents,
+        acceptance=acceptance,
         evaluations=counted.evaluations,
         invalid=counted.invalid,
-        log_likelihood=float(log_likelihood),
+        log_likelihood=log_likelihood,
         spread_before=np.std(predicted, axis=0),
-        spread_after=standard_deviation(particles, weights),
+        spread_after=standard_deviation(population.particles, weights),
         collapsed=weights.collapsed,
         remedy=COLLAPSE_REMEDY if weights.collapsed else remedy,
     )
@@ -207,12 +251,12 @@ def _log_likelihood_of_estimate(
 
 def state_to_arrays(state: State) -> dict[str, FloatArray]:
     """The state as named arrays, for a log that a run can be resumed from."""
-    return {field.name: np.asarray(getattr(state, field.name)) for field in fields(state)}
+    return {column.name: np.asarray(getattr(state, column.name)) for column in fields(state)}
 
 
 def state_from_arrays(arrays: Mapping[str, FloatArray], kind: type[StateT] = State) -> StateT:  # type: ignore[assignment]
     """The inverse of `state_to_arrays`, to the bit. `kind` is the method's own State where it has one."""
-    names = [field.name for field in fields(kind)]
+    names = [column.name for column in fields(kind)]
     missing = [name for name in names if name not in arrays]
     if missing:
         raise InputError("saved filter state", expected=", ".join(names), got=f"no {', '.join(missing)}")

@@ -35,11 +35,12 @@ from muybridge.filters.dynamics import Dynamics
 from muybridge.filters.moves import LogPrior, Target, difference_scale_of, differential_move
 from muybridge.filters.particles import FloatArray, Weights
 from muybridge.filters.resampling import Indices, resample
-from muybridge.filters.schedule import exponent_for_survival
+from muybridge.filters.schedule import exponent_for_survival, powered
 from muybridge.filters.state import (
     CommonConfig,
     CountingLikelihood,
     Info,
+    Layers,
     Likelihood,
     State,
     conclude,
@@ -48,6 +49,7 @@ from muybridge.filters.state import (
 )
 
 UNFINISHED_REMEDY = "the layers ended before the full likelihood was reached: more layers, or a lower survival rate"
+ALL_EQUAL = 1.0 - 1e-9
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -95,28 +97,24 @@ def step(
     centres = dynamics.sample(rng, state.particles[selected], state.velocity, 0.0)
     predicted = dynamics.sample(rng, centres)
     target = Target(counted, dynamics.lower, dynamics.upper, exponent=0.0)
-    population = target.measure(predicted)
-    rows: list[tuple[float, float, float]] = []
+    population, layers = target.measure(predicted), Layers()
     for layer in range(config.layers):
         exponent = _next_exponent(population.log_likelihoods, target.exponent, config)
-        weights = Weights(_rise(population.log_likelihoods, exponent - target.exponent))
+        weights = Weights(powered(population.log_likelihoods, exponent - target.exponent))
         if weights.collapsed:
             break
-        if weights.survival_rate < 1.0 - 1e-9:  # selecting among equals would only lose some
+        if weights.survival_rate < ALL_EQUAL:  # selecting among equals would only lose some
             selected = resample(rng, weights, config.particles, config.resampling)
             population, centres = population.take(selected), centres[selected]
         log_prior = _normal_about(centres, dynamics.noise_sd) if config.keep_prior else None
         target = replace(target, exponent=exponent, log_prior=log_prior)
         jumps = rng.standard_normal(predicted.shape) * (config.c * config.shrink**layer * dynamics.noise_sd)
-        population, accepted = differential_move(rng, population, target, _scale(config, predicted.shape[1]), jumps)
-        rows.append((weights.survival_rate, exponent, accepted))
+        population, accepted = differential_move(rng, population, target, _scale(config, len(state.estimate)), jumps)
+        layers.append(weights.survival_rate, exponent, accepted)
     scores = target.log_density(population, np.arange(config.particles))
     log_weights = np.where(scores > -np.inf, 0.0, -np.inf)
     remedy = UNFINISHED_REMEDY if target.exponent < config.sharpness else ""
-    survival, exponents, acceptance = zip(*rows) if rows else ((), (), ())
-    return conclude(state, predicted, population.particles, population.log_likelihoods, log_weights, counted, config,
-                    survival_rate=survival, exponents=exponents, acceptance=acceptance,
-                    scores=scores, remedy=remedy)  # fmt: skip
+    return conclude(state, predicted, population, log_weights, counted, config, layers, scores=scores, remedy=remedy)
 
 
 def _next_exponent(log_likelihoods: FloatArray, exponent: float, config: Config) -> float:
@@ -126,12 +124,6 @@ def _next_exponent(log_likelihoods: FloatArray, exponent: float, config: Config)
         return exponent
     rise = exponent_for_survival(log_likelihoods, config.survival, highest=missing)
     return config.sharpness if rise == missing else exponent + rise
-
-
-def _rise(log_likelihoods: FloatArray, by: float) -> FloatArray:
-    """(N,) log weights of a rise of the exponent; impossible particles stay impossible at a rise of zero."""
-    possible = log_likelihoods > -np.inf
-    return np.where(possible, by * np.where(possible, log_likelihoods, 0.0), -np.inf)
 
 
 def _normal_about(centres: FloatArray, sd: FloatArray) -> LogPrior:
