@@ -100,7 +100,7 @@ def find_corners(picture: np.ndarray, inner_corners: tuple[int, int]) -> np.ndar
     window = max(SMALLEST_WINDOW, round(WINDOW_PER_SQUARE * _shortest_side(grid)))
     stop = (cv2.TERM_CRITERIA_EPS + cv2.TERM_CRITERIA_COUNT, 60, 1e-4)
     refined = cv2.cornerSubPix(grey, grid.reshape(-1, 1, 2).copy(), (window, window), (-1, -1), stop)
-    return _black_first(grey, refined.reshape(rows, columns, 2).astype(np.float64))
+    return _black_first(grey, _right_handed(refined.reshape(rows, columns, 2).astype(np.float64)))
 
 
 def lens_from_board(
@@ -146,7 +146,7 @@ def fit_lens(
     """
     if radial_terms not in (0, 1, 2, 3):
         raise InputError("radial terms", expected="0, 1, 2 or 3", got=str(radial_terms))
-    used = [index for index, view in enumerate(views) if view is not None]
+    used = {index: view for index, view in enumerate(views) if view is not None}
     while True:
         if len(used) < FEWEST_VIEWS:
             raise InputError(
@@ -155,21 +155,20 @@ def fit_lens(
                 got=f"{len(used)} of {len(views)}",
                 remedy="check the number of inner corners, and that the whole board is in view and sharp",
             )
-        fit, errors = _fit_once([views[index] for index in used], size, square_m, radial_terms)
+        fit, errors = _fit_once(list(used.values()), size, square_m, radial_terms)
         worst = int(np.argmax(errors))
         if errors[worst] <= max(OUTLIER_FLOOR, OUTLIER_RATIO * float(np.median(errors))):
             break
-        used.pop(worst)
+        used.pop(list(used)[worst])
     view_errors = np.full(len(views), np.nan)
-    view_errors[used] = errors
+    view_errors[list(used)] = errors
     return LensCalibration(size, view_errors_px=view_errors, **fit)
 
 
 def place_on_floor(corners: np.ndarray, square_m: float, matrix: np.ndarray, distortion: np.ndarray) -> BoardPose:
     """Place of a camera from one view of a board lying on the floor; the world is the board's, with z up.
 
-    The origin is the first corner, x runs along the first row, and y is chosen so that z points to the side from
-    which the camera sees the board.
+    The origin is the first corner, x runs along the first row and y against the columns.
 
     Parameters
     ----------
@@ -182,14 +181,13 @@ def place_on_floor(corners: np.ndarray, square_m: float, matrix: np.ndarray, dis
 
     board = board_points(corners.shape[1], corners.shape[0], square_m)
     pixels = corners.reshape(-1, 2)
-    for side in (-1.0, 1.0):  # as found, rows run towards the camera; a mirrored order is turned by the other sign
-        floor = board * (1.0, side, 1.0)
-        _, vectors, shifts, _ = cv2.solvePnPGeneric(floor, pixels, matrix, distortion, flags=cv2.SOLVEPNP_IPPE)
-        poses = [_refined_pose(floor, pixels, matrix, distortion, pair) for pair in zip(vectors, shifts, strict=True)]
-        best = min(poses, key=lambda pose: pose.rms_px)
-        if (-best.rotation.T @ best.translation)[2] > 0:
-            return best
-    raise InputError("board on the floor", expected="a camera above it", got="corners that fit from below only")
+    floor = board * (1.0, -1.0, 1.0)  # columns run down the picture: z is up only if y runs against them
+    _, vectors, shifts, _ = cv2.solvePnPGeneric(floor, pixels, matrix, distortion, flags=cv2.SOLVEPNP_IPPE)
+    poses = [_refined_pose(floor, pixels, matrix, distortion, pair) for pair in zip(vectors, shifts, strict=True)]
+    best = min(poses, key=lambda pose: pose.rms_px)
+    if (best.rotation.T @ best.translation)[2] >= 0:
+        raise InputError("board on the floor", expected="a camera above it", got="corners in mirrored order")
+    return best
 
 
 def camera_from_board(name: str, lens: LensCalibration, pose: BoardPose) -> Camera:
@@ -214,7 +212,7 @@ def _fit_once(
     fixed = (cv2.CALIB_FIX_K1, cv2.CALIB_FIX_K2, cv2.CALIB_FIX_K3)[radial_terms:]
     boards = [board_points(view.shape[1], view.shape[0], square_m).astype(np.float32) for view in views]
     pixels = [view.reshape(-1, 1, 2).astype(np.float32) for view in views]
-    rms, matrix, distortion, _, _, deviations, _, errors = cv2.calibrateCameraExtended(
+    rms, matrix, distortion, _, _, deviations, _, errors = cv2.calibrateCameraExtended(  # type: ignore[call-overload]
         boards, pixels, size, None, None, flags=sum(fixed)
     )
     fit = {
@@ -241,6 +239,13 @@ def _refined_pose(
 def _shortest_side(grid: np.ndarray) -> float:
     """Pixels between the nearest two neighbouring corners."""
     return min(float(np.linalg.norm(np.diff(grid, axis=axis), axis=-1).min()) for axis in (0, 1))
+
+
+def _right_handed(grid: np.ndarray) -> np.ndarray:
+    """The grid with columns running clockwise from rows, as a board seen from its front has them."""
+    along_row, along_column = grid[0, -1] - grid[0, 0], grid[-1, 0] - grid[0, 0]
+    clockwise = along_row[0] * along_column[1] - along_row[1] * along_column[0] > 0
+    return grid if clockwise else grid[:, ::-1].copy()
 
 
 def _black_first(grey: np.ndarray, grid: np.ndarray) -> np.ndarray:

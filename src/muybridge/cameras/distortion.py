@@ -103,6 +103,8 @@ def fold_radius_squared(coefficients: np.ndarray) -> float:
 @lru_cache(maxsize=256)
 def _first_fold(k1: float, k2: float, k3: float) -> float:
     """Smallest positive root s = r^2 of d/dr [r (1 + k1 r^2 + k2 r^4 + k3 r^6)] = 1 + 3 k1 s + 5 k2 s^2 + 7 k3 s^3."""
-    roots = np.roots([7 * k3, 5 * k2, 3 * k1, 1.0])
+    series = [7 * k3, 5 * k2, 3 * k1, 1.0]
+    # Leading terms this small bend nothing below 89 degrees, and would overflow the companion matrix.
+    roots = np.roots([term if abs(term) > 1e-11 else 0.0 for term in series])
     positive = [root.real for root in roots if abs(root.imag) < 1e-9 * (1 + abs(root)) and root.real > 0]
     return min(positive, default=np.inf)

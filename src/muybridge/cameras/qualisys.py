@@ -15,7 +15,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 
-from muybridge.cameras._reading import read_text, to_metres
+from muybridge.cameras._reading import picture_size, read_text, to_metres
 from muybridge.cameras.model import Camera
 from muybridge.cameras.rotations import nearest_rotation
 from muybridge.errors import InputError
@@ -67,7 +67,7 @@ def _camera(what: str, element: ElementTree.Element) -> Camera:
     position = np.array([_number(what, place, axis) for axis in ("x", "y", "z")])
     return Camera(
         name=serial,
-        size=size,
+        size=picture_size(what, size),
         matrix=np.array([[fx, skew, cx - left], [0.0, fy, cy - top], [0.0, 0.0, 1.0]]),
         distortion=_distortion(what, lens),
         rotation=rotation,

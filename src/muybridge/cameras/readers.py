@@ -105,7 +105,10 @@ def _files(paths: Path | str | Sequence[Path | str]) -> list[Path]:
         if not found:
             raise InputError(f"calibration {path}", expected="calibration files in this folder", got="none")
         return found
-    files = [Path(path) for path in paths]
+    try:
+        files = [Path(path) for path in paths]
+    except TypeError:
+        raise InputError("calibration", expected="a path or a list of paths", got=type(paths).__name__) from None
     if not files:
         raise InputError("calibration", expected="at least one file", got="none")
     return files
