@@ -19,9 +19,10 @@ from muybridge._kernels._jit import kernel
 from muybridge._kernels.chain import dof_screws
 from muybridge._kernels.outline import END, KIND, OUTLINE_COLUMNS, SIDE, outlines_of, project, row_span, support
 
-#: Columns of a row's facts: camera, segment, distance d, metres per pixel at the point, normal x, y, pixel x, y,
-#: pixels per log radius at the base and at the tip, alignment of mask border and normal in [0, 1].
-ROW_COLUMNS = 11
+#: Columns of a row's facts: camera, segment, distance d, metres per pixel at the point, normal x, y, pixel x, y, place along
+#: the segment (0 base, 1 tip), pixels per log width, pixels per log depth, alignment of the mask's border with the normal.
+CAMERA, SEGMENT, DISTANCE, METRES, NORMAL, PIXEL, ALONG, WIDTH, DEPTH, ALIGNMENT = 0, 1, 2, 3, 4, 6, 8, 9, 10, 11
+ROW_COLUMNS = 12
 NEIGHBOUR = 1.5  # pixels outwards; a point whose neighbour there lies in another segment is no border
 STEP = 0.5  # pixels between looks at the mask
 CAP_ANGLES = (-1.05, -0.52, 0.0, 0.52, 1.05)  # radians round the axis direction
@@ -80,7 +81,10 @@ def inside_another(outlines, own, x, y):
 
 @kernel
 def surface_point(camera, frame, end, half_axes, nx, ny, point):
-    """Fill `point` (3,), world: the point of an end whose image is farthest along (nx, ny)."""
+    """Fill `point` (3,), world: the point of an end whose image is farthest along (nx, ny).
+
+    Returns how far, in pixels, the outline moves there per log width and per log depth of the end.
+    """
     c = np.empty(3)
     for i in range(3):
         c[i] = frame[i, 0] * end[0] + frame[i, 1] * end[1] + frame[i, 2] * end[2] + frame[i, 3]
@@ -103,10 +107,12 @@ def surface_point(camera, frame, end, half_axes, nx, ny, point):
         for i in range(3):
             axis_i = frame[i, 0] * half_axes[j, 0] + frame[i, 1] * half_axes[j, 1] + frame[i, 2] * half_axes[j, 2]
             point[i] += share[j] / length * axis_i
+    along = 0.5 * share[2] * share[2]
+    return (share[0] * share[0] + along) / length, (share[1] * share[1] + along) / length
 
 
 @kernel
-def add_row(camera, c, k, s, affects, axes, anchors, point, nx, ny, x, y, grow_base, grow_tip, outlines, mask, reach,
+def add_row(camera, c, k, s, affects, axes, anchors, point, nx, ny, x, y, along, width, depth, outlines, mask, reach,
             rows, slopes, count):
     """Append the residual at one outline point unless another segment hides it or no border is near; the new count."""
     if count >= rows.shape[0] or inside_another(outlines, k, x + NEIGHBOUR * nx, y + NEIGHBOUR * ny):
@@ -135,11 +141,11 @@ def add_row(camera, c, k, s, affects, axes, anchors, point, nx, ny, x, y, grow_b
             r0, r1, r2 = point[0] - anchors[d, 0], point[1] - anchors[d, 1], point[2] - anchors[d, 2]
             slopes[count, d] = (g0 * (axes[d, 1] * r2 - axes[d, 2] * r1) + g1 * (axes[d, 2] * r0 - axes[d, 0] * r2)
                                 + g2 * (axes[d, 0] * r1 - axes[d, 1] * r0))
-    rows[count, 0], rows[count, 1], rows[count, 2] = c, s, distance
-    rows[count, 3] = 1.0 / max(1e-9, math.sqrt(g0 * g0 + g1 * g1 + g2 * g2))
-    rows[count, 4], rows[count, 5], rows[count, 6], rows[count, 7] = nx, ny, x, y
-    rows[count, 8], rows[count, 9] = grow_base, grow_tip
-    rows[count, 10] = border_alignment(mask, x + distance * nx, y + distance * ny, nx, ny)
+    rows[count, CAMERA], rows[count, SEGMENT], rows[count, DISTANCE] = c, s, distance
+    rows[count, METRES] = 1.0 / max(1e-9, math.sqrt(g0 * g0 + g1 * g1 + g2 * g2))
+    rows[count, NORMAL], rows[count, NORMAL + 1], rows[count, PIXEL], rows[count, PIXEL + 1] = nx, ny, x, y
+    rows[count, ALONG], rows[count, WIDTH], rows[count, DEPTH] = along, width, depth
+    rows[count, ALIGNMENT] = border_alignment(mask, x + distance * nx, y + distance * ny, nx, ny)
     return count + 1
 
 
@@ -167,17 +173,16 @@ def contour_rows(pose, parent, fixed, axis, dof, shaped, ends, half_axes, affect
                 for side in range(2):
                     base = SIDE + 6 * side
                     nx, ny = out[base], out[base + 1]
-                    surface_point(cameras[c], frames[s], ends[s, 0], half_axes[s, 0], nx, ny, first)
-                    surface_point(cameras[c], frames[s], ends[s, 1], half_axes[s, 1], nx, ny, second)
-                    h1, h2 = support(out, END, nx, ny), support(out, END + 6, nx, ny)
+                    w1, d1 = surface_point(cameras[c], frames[s], ends[s, 0], half_axes[s, 0], nx, ny, first)
+                    w2, d2 = surface_point(cameras[c], frames[s], ends[s, 1], half_axes[s, 1], nx, ny, second)
                     for i in range(side_points):
                         t = (i + 0.5) / side_points
                         x = out[base + 2] + t * (out[base + 4] - out[base + 2])
                         y = out[base + 3] + t * (out[base + 5] - out[base + 3])
                         for j in range(3):
                             point[j] = first[j] + t * (second[j] - first[j])
-                        count = add_row(cameras[c], c, k, s, affects, axes, anchors, point, nx, ny, x, y, (1.0 - t) * h1, t * h2,
-                                        outlines, masks[c], reaches[c], rows, slopes, count)
+                        count = add_row(cameras[c], c, k, s, affects, axes, anchors, point, nx, ny, x, y, t, w1 + t * (w2 - w1),
+                                        d1 + t * (d2 - d1), outlines, masks[c], reaches[c], rows, slopes, count)
             count = _caps(cameras[c], c, k, s, frames[s], ends[s], half_axes[s], affects, axes, anchors, outlines, masks[c],
                           reaches[c], point, rows, slopes, count)
     return count
@@ -207,8 +212,7 @@ def _caps(camera, c, k, s, frame, ends, half_axes, affects, axes, anchors, outli
             h = support(out, base, nx, ny)
             x = out[base] + (out[base + 2] * nx + out[base + 3] * ny) / h
             y = out[base + 1] + (out[base + 3] * nx + out[base + 4] * ny) / h
-            surface_point(camera, frame, ends[e], half_axes[e], nx, ny, point)
-            grow_base, grow_tip = (h, 0.0) if e == 0 else (0.0, h)
-            count = add_row(camera, c, k, s, affects, axes, anchors, point, nx, ny, x, y, grow_base, grow_tip, outlines, mask,
+            width, depth = surface_point(camera, frame, ends[e], half_axes[e], nx, ny, point)
+            count = add_row(camera, c, k, s, affects, axes, anchors, point, nx, ny, x, y, float(e), width, depth, outlines, mask,
                             reach, rows, slopes, count)
     return count

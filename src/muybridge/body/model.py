@@ -233,15 +233,18 @@ class Body:
     def radius_groups(self) -> tuple[str, ...]:
         return tuple(dict.fromkeys(s.radius_group for s in self.segments if s.radius_group))
 
-    def scaled(self, lengths: Mapping[str, float] | None = None, radii: Mapping[str, float] | None = None) -> Body:
-        """The same body with lengths and radii multiplied by a factor per group.
+    def scaled(self, lengths: Mapping[str, float] | None = None, widths: Mapping[str, float] | None = None,
+               depths: Mapping[str, float] | None = None) -> Body:
+        """The same body with its measures multiplied by a factor per group.
 
-        Landmark offsets move with their segment's length.
+        `widths` are the half axes along each shape's `side`, `depths` the ones across; landmark offsets move with their
+        segment's length.
         """
-        lengths, radii = dict(lengths or {}), dict(radii or {})
+        lengths, widths, depths = dict(lengths or {}), dict(widths or {}), dict(depths or {})
         _check_groups(self.name, "length", lengths, self.length_groups)
-        _check_groups(self.name, "radius", radii, self.radius_groups)
-        segments = tuple(_scale_segment(s, lengths, radii) for s in self.segments)
+        _check_groups(self.name, "width", widths, self.radius_groups)
+        _check_groups(self.name, "depth", depths, self.radius_groups)
+        segments = tuple(_scale_segment(s, lengths, widths, depths) for s in self.segments)
         by_name = {s.name: s for s in self.segments}
         marks = {name: replace(m, offset=_times(m.offset, lengths.get(by_name[m.segment].length_group, 1.0)))
                  for name, m in self.landmarks.items()}
@@ -256,7 +259,7 @@ class Body:
 
     def resized(self, factor: float) -> Body:
         """Every length, offset and radius multiplied by one factor."""
-        segments = tuple(replace(s, offset=_times(s.offset, factor), shape=s.shape and _resize_shape(s.shape, factor, factor))
+        segments = tuple(replace(s, offset=_times(s.offset, factor), shape=s.shape and _resize_shape(s.shape, factor, factor, factor))
                          for s in self.segments)
         marks = {name: replace(m, offset=_times(m.offset, factor)) for name, m in self.landmarks.items()}
         return replace(self, segments=segments, landmarks=marks, height=self.height * factor)
@@ -308,14 +311,16 @@ def _times(vector: Sequence[float], factor: float) -> tuple[float, float, float]
     return x, y, z
 
 
-def _resize_shape(shape: Shape, length: float, radius: float) -> Shape:
+def _resize_shape(shape: Shape, length: float, width: float, depth: float) -> Shape:
     return replace(shape, base=_times(shape.base, length), tip=_times(shape.tip, length),
-                   radii=(shape.radii[0] * radius, shape.radii[1] * radius))
+                   scale=(shape.scale[0] * width, shape.scale[1] * depth))
 
 
-def _scale_segment(segment: Segment, lengths: Mapping[str, float], radii: Mapping[str, float]) -> Segment:
-    length, radius = lengths.get(segment.length_group, 1.0), radii.get(segment.radius_group, 1.0)
-    shape = segment.shape and _resize_shape(segment.shape, length, radius)
+def _scale_segment(segment: Segment, lengths: Mapping[str, float], widths: Mapping[str, float],
+                   depths: Mapping[str, float]) -> Segment:
+    length = lengths.get(segment.length_group, 1.0)
+    width, depth = widths.get(segment.radius_group, 1.0), depths.get(segment.radius_group, 1.0)
+    shape = segment.shape and _resize_shape(segment.shape, length, width, depth)
     return replace(segment, offset=_times(segment.offset, lengths.get(segment.offset_group, 1.0)), shape=shape)
 
 

@@ -29,13 +29,15 @@ def camera_rows(rig: Rig | Sequence[Camera]) -> np.ndarray:
 
 
 def reduce_mask(mask: np.ndarray, factor: int) -> np.ndarray:
-    """(H, W) bool -> (H', W') float32 in [0, 1]: the share of foreground in every block of `factor` x `factor` pixels."""
-    grey = mask.astype(np.float32)
-    if factor == 1:
-        return grey
-    height, width = mask.shape
-    size = max(1, round(width / factor)), max(1, round(height / factor))
-    return cv2.resize(grey, size, interpolation=cv2.INTER_AREA)
+    """(H, W) bool -> (H // factor, W // factor) float32: the share of foreground in every block of `factor` x `factor`.
+
+    What is left over at the right and bottom is cut off, so that the scale is exact.
+    """
+    height, width = (side // factor * factor for side in mask.shape)
+    whole = mask[:height, :width].astype(np.uint8) * np.uint8(255)
+    if factor > 1:
+        whole = cv2.resize(whole, (width // factor, height // factor), interpolation=cv2.INTER_AREA)
+    return whole.astype(np.float32) / 255.0
 
 
 def stack_masks(shares: Sequence[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:

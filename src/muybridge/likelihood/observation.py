@@ -1,0 +1,114 @@
+"""One frame as the filters see it: frozen, with `log_prob` for particles and `normal_equations` for the guided search.
+
+`ImageLikelihood` is made once for a body and a rig and says how pictures become evidence; `observe` is called once a frame.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from muybridge._kernels.silhouette import silhouette_counts
+from muybridge.body.model import Body
+from muybridge.cameras.model import Rig
+from muybridge.errors import InputError
+from muybridge.likelihood.contour import SIDE_POINTS, ContourRows, NormalEquations, contour_rows, robust_weights
+from muybridge.likelihood.pictures import camera_rows, reduce_mask, stack_masks
+
+
+@dataclass(frozen=True)
+class ImageLikelihood:
+    """How pictures of one person become evidence about a pose.
+
+    Parameters
+    ----------
+    body : Body
+    rig : Rig
+        Cameras of the pictures as recorded.
+    reductions : (C,) int
+        Every camera's masks are reduced by this factor before anything is measured.
+    row_sd : float, metres
+        Error of one contour point, with neighbours' dependence in it.
+    sharpness : float
+        K: multiplies the silhouette's negative cost in `log_prob`.
+    weights : (C,) float
+        Of each camera; a camera whose masks are bad can be made to count less.
+    """
+
+    body: Body
+    rig: Rig
+    reductions: tuple[int, ...]
+    row_sd: float = 0.02
+    sharpness: float = 200.0
+    weights: tuple[float, ...] = ()
+
+    @cached_property
+    def cameras(self) -> np.ndarray:
+        """(C, CAMERA_COLUMNS) float64: the cameras of the reduced pictures."""
+        reduced = []
+        for camera, factor in zip(self.rig, self.reductions, strict=True):
+            width, height = camera.size
+            reduced.append(camera.scaled(1.0 / factor).with_size(max(1, width // factor), max(1, height // factor)))
+        return camera_rows(reduced)
+
+    @cached_property
+    def camera_weights(self) -> np.ndarray:
+        """(C,) float64, mean 1."""
+        weights = np.array(self.weights or np.ones(len(self.rig)), float)
+        return weights / weights.mean()
+
+    def observe(self, masks: Sequence[np.ndarray]) -> Observation:
+        """The frame's evidence from masks (C times (H, W) bool) at recorded size."""
+        if len(masks) != len(self.rig):
+            raise InputError("masks", expected=f"one for each of the {len(self.rig)} cameras", got=str(len(masks)))
+        for mask, camera in zip(masks, self.rig, strict=True):
+            if mask.shape != camera.size[::-1]:
+                expected, got = "x".join(map(str, camera.size)), "x".join(map(str, mask.shape[::-1]))
+                raise InputError(f"mask of camera {camera.name!r}", expected=f"{expected} pixels as calibrated", got=got)
+        shares = [reduce_mask(mask, factor) for mask, factor in zip(masks, self.reductions, strict=True)]
+        grey, bits = stack_masks(shares)
+        return Observation(self, grey, bits)
+
+
+@dataclass(frozen=True, eq=False)
+class Observation:
+    """Evidence of one frame.
+
+    shares : (C, H, W) float32 in [0, 1], reduced masks; bits : (C, H, words) uint64, the same thresholded at one half.
+    """
+
+    model: ImageLikelihood
+    shares: np.ndarray
+    bits: np.ndarray
+
+    @cached_property
+    def areas(self) -> np.ndarray:
+        """(C,) foreground pixels of the reduced masks."""
+        return np.array([int(np.count_nonzero(share >= 0.5)) for share in self.shares])
+
+    def costs(self, poses: np.ndarray) -> np.ndarray:
+        """Two-sided silhouette cost (Sedai 2013, eq. 12) of poses (N, D) in each camera, (N, C) in [0, 1]."""
+        poses = np.ascontiguousarray(np.atleast_2d(poses), np.float64)
+        counts = silhouette_counts(poses, *self.model.body.arrays, self.model.cameras, self.bits)
+        drawn, inside = counts[..., 0].astype(float), counts[..., 1].astype(float)
+        missed = 1.0 - inside / np.maximum(self.areas, 1)
+        spilt = 1.0 - inside / np.maximum(drawn, 1.0)
+        return 0.5 * (missed + spilt)
+
+    def log_prob(self, poses: np.ndarray) -> np.ndarray:
+        """Log likelihood (N,) of poses (N, D), up to a constant."""
+        return -self.model.sharpness * (self.costs(poses) @ self.model.camera_weights) / len(self.model.rig)
+
+    def contour(self, pose: np.ndarray, spread: float, side_points: int = SIDE_POINTS) -> ContourRows:
+        """Contour residuals of one pose (D,); see `likelihood.contour`."""
+        return contour_rows(self.model.body, self.model.cameras, self.shares, pose, spread, side_points)
+
+    def normal_equations(self, pose: np.ndarray, spread: float) -> NormalEquations:
+        """Curvature and gradient of the contour's log likelihood at a pose (D,), robust beyond `spread` metres."""
+        rows = self.contour(pose, spread)
+        weights = robust_weights(rows.distance, spread) * self.model.camera_weights[rows.camera] / self.model.row_sd**2
+        weighted = rows.slopes * weights[:, None]
+        return NormalEquations(weighted.T @ rows.slopes, weighted.T @ rows.distance)
