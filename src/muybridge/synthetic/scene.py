@@ -1,0 +1,222 @@
+"""A scene whose truth is known: a person who moves in a room, seen by cameras.
+
+`demo_scene(seed)` is the scene of `muybridge demo`. Every picture depends on the scene and the frame alone, so frames may
+be rendered in any order. The person is a skinned mesh, so no cone model fits exactly, and lens, noise, shadow and a light
+that drifts are those of an ordinary camera.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from functools import lru_cache
+
+import numpy as np
+
+from muybridge.cameras.model import Camera, Rig
+from muybridge.errors import InputError
+from muybridge.synthetic.motion import Motion, Track, perform
+from muybridge.synthetic.rasterise import LIGHT, Cloth, Layer, draw
+from muybridge.synthetic.room import Room, picture
+from muybridge.synthetic.shadow import floor_shade
+from muybridge.synthetic.skinning import Figure, load_figure
+from muybridge.synthetic.textures import Colour, clothing
+
+EMPTY_FRAMES = -(2**20)  # frames of the empty scene draw their noise from here on, apart from the clip's
+
+
+@dataclass(frozen=True)
+class Garment:
+    """Cloth on one label of the figure: pattern of `textures.PATTERNS`, BGR colours, tile size in metres."""
+
+    label: str
+    pattern: str
+    colour: Colour
+    second: Colour = (0, 0, 0)
+    tile: float = 0.3
+
+
+BARE = (
+    Garment("skin", "plain", (150, 176, 220), tile=0.5),
+    Garment("hair", "denim", (42, 58, 84), tile=0.25),
+    Garment("eyes", "plain", (90, 90, 90)),
+)
+DEMO_OUTFIT = (
+    Garment("shirt", "stripes", (58, 46, 176), (206, 210, 214), tile=0.28),
+    Garment("trousers", "denim", (104, 66, 44), tile=0.4),
+    Garment("shoes", "plain", (40, 40, 44)),
+)
+
+
+@dataclass(frozen=True)
+class Scene:
+    """Everything a scene is made from.
+
+    Parameters
+    ----------
+    figure : a baked person, "man" or "woman"
+    motion, rig, room : what is done, who looks on, and where
+    outfit : garments; together with BARE they cover every label of the figure
+    noise : standard deviation of a grey value of 128, in grey values; it grows with the square root of the light
+    drift : relative change of the light, up and down, over the clip
+    shadow : 0 (none) to 1 (black): how dark the cast shadow is
+    """
+
+    rig: Rig
+    figure: str = "man"
+    motion: Motion = field(default_factory=Motion)
+    room: Room = field(default_factory=Room)
+    outfit: tuple[Garment, ...] = DEMO_OUTFIT
+    noise: float = 3.0
+    drift: float = 0.015
+    shadow: float = 0.45
+    seed: int = 0
+
+    @property
+    def frame_count(self) -> int:
+        """How many frames the clip has."""
+        return len(self.motion.times)
+
+
+@dataclass(frozen=True, eq=False)
+class Stage:
+    """What `Scene` describes, made: figure, cloth, track, and the empty room of each camera."""
+
+    figure: Figure
+    cloth: Cloth
+    track: Track
+    plates: tuple[np.ndarray, ...]
+    floors: tuple[np.ndarray, ...]
+
+
+def demo_scene(seed: int = 0, *, duration: float = 3.0, rate: float = 30.0) -> Scene:
+    """A man in a striped shirt walks a bend through a room, seen by three cameras of 640 x 480."""
+    rng = np.random.default_rng([seed, 20051])
+    side = rng.choice([-1.0, 1.0])
+    motion = Motion(
+        "walk",
+        duration,
+        rate,
+        heading=rng.uniform(-np.pi, np.pi),
+        turn_rate=side * rng.uniform(0.35, 0.55),
+        cadence=rng.uniform(0.85, 0.95),
+        vigour=rng.uniform(0.95, 1.05),
+        seed=seed,
+    )
+    return Scene(ring(rng, 3), motion=motion, room=Room(seed=seed), seed=seed)
+
+
+def ring(rng: np.random.Generator, count: int, *, radius: float = 3.9, size: tuple[int, int] = (640, 480)) -> Rig:
+    """Cameras on a circle around the origin, at the height of eyes or above, all looking at the middle of a person."""
+    cameras = []
+    for index in range(count):
+        azimuth = 2 * np.pi * index / count + rng.uniform(-0.25, 0.25)
+        distance = radius * rng.uniform(0.95, 1.05)
+        place = np.array([distance * np.cos(azimuth), distance * np.sin(azimuth), rng.uniform(1.5, 2.3)])
+        lens = np.array([-0.12, 0.06, 0.0, 0.0, 0.0]) * rng.uniform(0.7, 1.1) + (0, 0, *rng.normal(0, 3e-4, 2), 0)
+        aim = np.array([0.0, 0.0, 0.88]) + rng.uniform(-0.05, 0.05, 3)
+        focal = rng.uniform(0.88, 0.94) * size[0]
+        cameras.append(looking_at(f"cam{index + 1}", place, aim, focal=focal, size=size, distortion=lens))
+    return Rig(tuple(cameras))
+
+
+def looking_at(
+    name: str,
+    place: np.ndarray,
+    target: np.ndarray,
+    *,
+    focal: float,
+    size: tuple[int, int] = (640, 480),
+    distortion: np.ndarray | None = None,
+) -> Camera:
+    """An upright camera at `place` with `target` in the middle of its picture; metres, pixels."""
+    forward = np.asarray(target, dtype=np.float64) - place
+    forward /= np.linalg.norm(forward)
+    right = np.cross(forward, (0.0, 0.0, 1.0))
+    right /= np.linalg.norm(right)
+    rotation = np.stack([right, np.cross(forward, right), forward])
+    matrix = np.array([[focal, 0, (size[0] - 1) / 2], [0, focal, (size[1] - 1) / 2], [0, 0, 1]])
+    lens = np.zeros(5) if distortion is None else distortion
+    return Camera(name, size, matrix, lens, rotation, -rotation @ np.asarray(place, dtype=np.float64))
+
+
+def truth(scene: Scene) -> Track:
+    """The true joints and bone frames of the clip."""
+    return stage(scene).track
+
+
+def figure_of(scene: Scene) -> Figure:
+    """The person in the scene."""
+    return stage(scene).figure
+
+
+def render(scene: Scene, frame: int) -> tuple[tuple[np.ndarray, ...], tuple[np.ndarray, ...]]:
+    """One frame.
+
+    Returns
+    -------
+    images : one (H, W, 3) uint8 BGR a camera
+    masks : one (H, W) bool a camera: the person covers at least half of the pixel
+    """
+    if not 0 <= frame < scene.frame_count:
+        raise InputError("frame", expected=f"0 to {scene.frame_count - 1}", got=str(frame))
+    made = stage(scene)
+    figure, track = made.figure, made.track
+    vertices = figure.skin(track.rotations[frame], track.places[frame])
+    normals = figure.normals(vertices)
+    shade = floor_shade(vertices, figure.faces, LIGHT, scene.shadow)
+    images, masks = [], []
+    for index, camera in enumerate(scene.rig):
+        layer = draw(camera, vertices, figure.faces, normals, figure.material, figure.face_labels, made.cloth)
+        colours = shade.applied(made.plates[index], made.floors[index])
+        images.append(_exposed(scene, _over(colours, layer), index, frame))
+        masks.append(_mask(layer, camera.size))
+    return tuple(images), tuple(masks)
+
+
+def empty(scene: Scene, count: int = 1) -> Iterator[tuple[np.ndarray, ...]]:
+    """`count` frames of the room without the person, as the cameras see them just before the clip."""
+    made = stage(scene)
+    for frame in range(count):
+        yield tuple(_exposed(scene, plate, index, EMPTY_FRAMES + frame) for index, plate in enumerate(made.plates))
+
+
+@lru_cache(maxsize=4)
+def stage(scene: Scene) -> Stage:
+    """Make everything that does not change from frame to frame; the last few scenes are kept."""
+    figure = load_figure(scene.figure)
+    rng = np.random.default_rng([scene.seed, 1])
+    garments = {item.label: (item.pattern, item.colour, item.second, item.tile) for item in (*BARE, *scene.outfit)}
+    cloth = clothing(rng, garments, figure.label_names)
+    rooms = [picture(scene.room, camera) for camera in scene.rig]
+    return Stage(
+        figure, cloth, perform(figure, scene.motion), tuple(plate for plate, _ in rooms), tuple(floor for _, floor in rooms)
+    )
+
+
+def _over(background: np.ndarray, layer: Layer) -> np.ndarray:
+    """The layer laid over a picture (H, W, 3) float32, which it changes."""
+    left, top, right, bottom = layer.window
+    part = background[top:bottom, left:right]
+    part *= 1.0 - layer.coverage[..., None]
+    part += layer.colours
+    return background
+
+
+def _mask(layer: Layer, size: tuple[int, int]) -> np.ndarray:
+    """(H, W) bool."""
+    mask = np.zeros((size[1], size[0]), dtype=bool)
+    left, top, right, bottom = layer.window
+    mask[top:bottom, left:right] = layer.coverage >= 0.5
+    return mask
+
+
+def _exposed(scene: Scene, colours: np.ndarray, camera: int, frame: int) -> np.ndarray:
+    """(H, W, 3) uint8: the light's drift, then a sensor's noise: its variance grows with the light, plus a floor."""
+    rng = np.random.default_rng([scene.seed, camera, frame - EMPTY_FRAMES])
+    time = max(frame, 0) / scene.motion.rate
+    gain = 1.0 + scene.drift * np.sin(2 * np.pi * time / max(scene.motion.duration, 1e-9))
+    light = colours * np.float32(gain)
+    deviation = np.sqrt(light * np.float32(0.75 / 128) + np.float32(0.25)) * np.float32(scene.noise)
+    noise = rng.standard_normal(light.shape, dtype=np.float32)
+    return np.clip(light + deviation * noise + 0.5, 0, 255).astype(np.uint8)
