@@ -64,14 +64,7 @@ def _draw_camera(ax: Axes, name: str, position: np.ndarray, direction: np.ndarra
     flat = direction[:2] / max(float(np.linalg.norm(direction[:2])), 1e-9)
     heading = np.degrees(np.arctan2(flat[1], flat[0]))
     artists: list[Artist] = list(ax.plot(*position[:2], marker=(3, 0, heading + 90), color=theme.middle, markersize=11))
-    label = ax.annotate(
-        name,
-        position[:2],
-        xytext=(-14 * flat[0], -14 * flat[1]),
-        textcoords="offset points",
-        ha="center",
-        va="center",
-        fontsize=8,
-        color=theme.muted,
-    )
+    across = "left" if flat[0] < -0.5 else "right" if flat[0] > 0.5 else "center"
+    place = {"xytext": (-10 * flat[0], -12 * flat[1]), "textcoords": "offset points", "ha": across, "va": "center"}
+    label = ax.annotate(name, (position[0], position[1]), **place, fontsize=8, color=theme.muted)
     return [*artists, label]

@@ -122,10 +122,11 @@ def new_figure(
 
 
 def title(ax: Axes, text: str, detail: str = "", theme: Theme = LIGHT) -> None:
-    """A heading at the left, and beside it in a quieter tone what is shown in which unit."""
-    ax.set_title(text, loc="left", color=theme.ink, fontweight="bold", fontsize=10)
+    """A heading, and under it in a quieter tone what is shown in which unit."""
+    ax.set_title(text, loc="left", color=theme.ink, fontweight="bold", fontsize=10, pad=20 if detail else 8)
     if detail:
-        ax.set_title(detail, loc="right", color=theme.muted, fontsize=8.5)
+        place = {"xy": (0, 1), "xycoords": "axes fraction", "xytext": (0, 7), "textcoords": "offset points"}
+        ax.annotate(detail, **place, color=theme.muted, fontsize=8.5)
 
 
 def to_png(figure: Figure, dpi: int = 150) -> bytes:
