@@ -8,6 +8,9 @@
 `synchronise`          `check_synchronised`, `synchronised`: several cameras as one stream
 `run_folder`           `joints.csv`, `pose.csv`, `run.json`
 `run_log`              the log that `--resume` continues from
-`disk`                 `disk_errors`, `replaced_on_success`: one line for a full disk; whole files or none
+`job`                  the job file: cameras, calibration, body, filter, settings
+`trc`                  marker tables for OpenSim and its kin
+`disk`                 `disk_errors`, `replace_file`: a full disk is one line; whole files or none
+`prefetch`             `prefetched`: decode ahead in a thread
 =====================  ==============================================================================
 """

@@ -190,7 +190,7 @@ def index_frames(path: Path, threads: int = 1) -> FrameIndex:
 def _without_unreadable_end(path: Path, threads: int, index: FrameIndex) -> FrameIndex:
     """Leave out the frames after the last that decodes; gaps before it stay, so that frames keep their numbers."""
     with Decoder(path, threads) as decoder:
-        last = max((frame.pts for frame in decoder.raw_frames() if frame.pts is not None), default=-1)
+        last = max((frame.pts for frame in decoder.raw_frames() if frame.pts is not None), default=-(2**62))
     return replace(index, ticks=index.ticks[index.ticks <= last], key_ticks=index.key_ticks[index.key_ticks <= last])
 
 

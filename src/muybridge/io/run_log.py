@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import math
 import os
 import struct
 import zlib
@@ -240,7 +241,7 @@ def _record_dtype(path: Path, described: list) -> np.dtype:
             raise InputError(f"{path}: field {name}", expected="numbers or bools", got=str(kind))
         if any(side < 0 for side in shape):
             raise InputError(f"{path}: field {name}", expected="a shape", got=str(shape))
-    dtype = np.dtype([(name, kind, tuple(shape)) for name, kind, shape in described])
-    if not 0 < dtype.itemsize <= _MAX_RECORD_BYTES:
-        raise InputError(f"{path}: record", expected=f"1 to {_MAX_RECORD_BYTES} bytes", got=str(dtype.itemsize))
-    return dtype
+    size = sum(np.dtype(kind).itemsize * math.prod(shape) for _, kind, shape in described)
+    if not 0 < size <= _MAX_RECORD_BYTES:
+        raise InputError(f"{path}: record", expected=f"1 to {_MAX_RECORD_BYTES} bytes", got=str(size))
+    return np.dtype([(name, kind, tuple(shape)) for name, kind, shape in described])

@@ -57,10 +57,10 @@ class VideoWriter:
     def write(self, picture: np.ndarray) -> None:
         """Append one picture, (H, W, 3) uint8 BGR or (H, W) grey; bool masks become black and white."""
         picture = self._checked(picture)
-        with disk_errors(self.path):
-            if self._container is None:
-                self._open()
-            self._encode(picture)
+        if self._container is None:
+            self._open()
+        self._encode(picture)
+        self._file.raise_refusal(self.path)
         self.frame_count += 1
 
     def close(self) -> None:
@@ -115,7 +115,9 @@ class VideoWriter:
 
         assert self.size is not None
         make_folder(self.path.parent)
-        self._container = av.open(str(self.unfinished), "w", format="mp4", options=_GROWING)
+        with disk_errors(self.path):
+            self._file = _PatientFile(self.unfinished)
+        self._container = av.open(self._file, "w", format="mp4", options=_GROWING)
         self._stream = self._container.add_stream("libx264", rate=self.frame_rate, options=self._options)
         self._stream.width, self._stream.height = (side + side % 2 for side in self.size)
         self._stream.pix_fmt = "yuv420p"
@@ -141,12 +143,39 @@ class VideoWriter:
 
     def _finish(self) -> None:
         container, self._container = self._container, None
-        with disk_errors(self.path):
-            try:
-                for packet in self._stream.encode(None):
-                    container.mux(packet)
-            finally:
-                container.close()
+        for packet in self._stream.encode(None):
+            container.mux(packet)
+        container.close()
+        self._file.close()
+        self._file.raise_refusal(self.path)
+
+
+class _PatientFile:
+    """A file that FFmpeg writes to and that never refuses: FFmpeg 8 crashes where a fragment cannot be written.
+
+    The first refusal of the system is kept for `raise_refusal`, and nothing is written after it.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self._file = open(path, "wb", buffering=0)
+        self._refusal: OSError | None = None
+
+    def write(self, data: bytes) -> int:
+        rest = memoryview(data)
+        try:
+            while rest and self._refusal is None:
+                rest = rest[self._file.write(rest) :]
+        except OSError as error:
+            self._refusal = error
+        return len(data)
+
+    def close(self) -> None:
+        self._file.close()
+
+    def raise_refusal(self, path: Path) -> None:
+        if self._refusal is not None:
+            with disk_errors(path):
+                raise self._refusal
 
 
 def _in_one_piece(fragments: Path, target: Path) -> None:
