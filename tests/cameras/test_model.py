@@ -174,7 +174,9 @@ class TestOtherPictures:
         camera, turn = a_camera(), rotation_from_vector(np.array(vector) * 3)
         points = points_in_view(camera, 10)
         moved = camera.in_world(turn, shift)
-        np.testing.assert_allclose(moved.world_to_pixel(points @ turn.T + shift), camera.world_to_pixel(points), atol=1e-8)
+        np.testing.assert_allclose(
+            moved.world_to_pixel(points @ turn.T + shift), camera.world_to_pixel(points), atol=1e-8
+        )
 
     @pytest.mark.parametrize("factor", [0, -1, np.nan, np.inf])
     def test_impossible_scale(self, factor):

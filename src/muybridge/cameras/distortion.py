@@ -62,7 +62,7 @@ def undistort(points: np.ndarray, coefficients: np.ndarray) -> np.ndarray:
         for _ in range(NEWTON_STEPS):
             step = _newton_step(straight, target, coefficients)
             straight = straight - step
-            if not np.any(np.abs(step) > 1e-15 * (1 + np.abs(straight))):
+            if not np.any(np.abs(step) > 1e-11 * (1 + np.abs(straight))):  # squared by the next step: rounding
                 break
         residual = np.abs(distort(straight, coefficients) - target).max(axis=-1)
         r2 = np.sum(straight * straight, axis=-1)

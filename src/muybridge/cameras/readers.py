@@ -99,7 +99,7 @@ def _files(paths: Path | str | Sequence[Path | str]) -> list[Path]:
     """A list of files; a folder stands for the calibration files in it."""
     if isinstance(paths, (str, os.PathLike)):
         path = Path(paths)
-        if not path.is_dir():
+        if not os.path.isdir(path):  # which answers for impossible paths too
             return [path]
         found = sorted((file for file in path.iterdir() if file.is_file() and _suffix_of(file)), key=_natural)
         if not found:
