@@ -156,7 +156,7 @@ class TestPlace:
         assert pose.rms_px < 1e-4
 
     def test_drawn_views(self):
-        """Every view of a board is one from above it, at 0.8 m; corners good to 0.1 px in squares of 50: millimetres."""
+        """Every view of a board is from above it, at 0.8 m; corners good to 0.1 px in squares of 50: millimetres."""
         for index, picture in enumerate(drawn_views()):
             pose = place_on_floor(find_corners(picture, INNER), SQUARE, MATRIX, DISTORTION)
             camera = Camera("a", SIZE, MATRIX, DISTORTION, pose.rotation, pose.translation)
