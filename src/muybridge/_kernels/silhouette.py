@@ -1,74 +1,85 @@
 """Silhouettes of many poses, drawn as bits and counted against the observed mask (Du 2005, 5.2.1; Sedai 2013, IV-A).
 
-Three floors: `silhouette_counts` (parallel over chunks of particles) -> `_one_particle` -> `outline` and `bits`.
+Three floors: `silhouette_counts` (parallel over chunks of particles) -> `_one_particle` -> `outline` and `draw`.
 """
 
 from __future__ import annotations
-
-import math
 
 import numba
 import numpy as np
 
 from muybridge._kernels._jit import kernel, parallel_kernel
-from muybridge._kernels.bits import fill_span, popcount
+from muybridge._kernels.bits import popcount
 from muybridge._kernels.chain import one_chain
-from muybridge._kernels.outline import BOTTOM, KIND, OUTLINE_COLUMNS, TOP, outline_of, row_span
+from muybridge._kernels.draw import draw_outline, transpose_rows
+from muybridge._kernels.outline import OUTLINE_COLUMNS, outlines_of
 
 CHUNK = 16  # particles a thread takes at a time
+_0 = np.uint64(0)
 
 
 @kernel
-def draw_outline(outline, width, height, canvas):
-    """Set the outline's pixels in `canvas` (rows, words); returns first and last row touched (first > last: none)."""
-    if outline[KIND] == 0.0:
-        return height, -1
-    first = int(max(0.0, math.ceil(min(outline[TOP], 1e6))))
-    last = int(min(height - 1.0, math.floor(max(outline[BOTTOM], -1e6))))
-    for y in range(first, last + 1):
-        left, right = row_span(outline, float(y))
-        x0 = int(max(0.0, math.ceil(max(-1.0, min(left, 1e6)))))
-        x1 = int(min(width - 1.0, math.floor(max(-1.0, min(right, 1e6)))))
-        if x0 <= x1:
-            fill_span(canvas[y], x0, x1)
-    return first, last
+def count_and_clear(column, mask):
+    """Bits set in a word column, and of these the ones in the mask; the column is empty afterwards."""
+    model = inside = 0
+    for i in range(column.shape[0]):
+        word = column[i]
+        model += popcount(word)
+        inside += popcount(word & mask[i])
+        column[i] = _0
+    return model, inside
 
 
 @kernel
-def _one_particle(pose, parent, fixed, axis, dof, shaped, ends, half_axes, cameras, masks, frames, outline, canvas, out):
+def _one_particle(pose, parent, fixed, axis, dof, shaped, ends, half_axes, cameras, masks, frames, outlines, canvas, first, last,
+                  out):
     """Counts (C, 2) of one pose: pixels of the model, and of these the ones inside the mask."""
     one_chain(pose, parent, fixed, axis, dof, frames)
     for c in range(cameras.shape[0]):
         width, height = int(cameras[c, 23]), int(cameras[c, 24])
-        first, last = height, -1
+        outlines_of(cameras[c], frames, shaped, ends, half_axes, outlines)
+        top, bottom, word, end = height, 0, canvas.shape[0], 0
         for k in range(shaped.shape[0]):
-            s = shaped[k]
-            outline_of(cameras[c], frames[s], ends[s], half_axes[s], outline)
-            a, b = draw_outline(outline, width, height, canvas)
-            if a <= b:
-                first, last = min(first, a), max(last, b)
-        words = (width + 63) >> 6
+            t, b, w, e = draw_outline(outlines[k], width, height, canvas, first, last)
+            if t < b:
+                top, bottom, word, end = min(top, t), max(bottom, b), min(word, w), max(end, e)
         model = inside = 0
-        for y in range(first, last + 1):
-            for w in range(words):
-                word = canvas[y, w]
-                if word != np.uint64(0):
-                    model += popcount(word)
-                    inside += popcount(word & masks[c, y, w])
-                    canvas[y, w] = np.uint64(0)
+        for w in range(word, end):
+            m, i = count_and_clear(canvas[w, top + 1 : bottom + 1], masks[c, w, top + 1 : bottom + 1])
+            model += m
+            inside += i
         out[c, 0], out[c, 1] = model, inside
 
 
 @parallel_kernel
-def silhouette_counts(poses, parent, fixed, axis, dof, shaped, ends, half_axes, cameras, masks):
-    """Model pixels and model pixels inside the mask, (N, C, 2) int64, for poses (N, D) and masks (C, H, words)."""
-    count, views = poses.shape[0], cameras.shape[0]
-    out = np.empty((count, views, 2), np.int64)
+def _over_particles(poses, parent, fixed, axis, dof, shaped, ends, half_axes, cameras, masks, out):
+    """Fill out (N, C, 2); particles are independent, so that threads change nothing."""
+    count, rows = poses.shape[0], masks.shape[2]
     for chunk in numba.prange((count + CHUNK - 1) // CHUNK):
         frames = np.empty((parent.shape[0], 3, 4))
-        outline = np.empty(OUTLINE_COLUMNS)
-        canvas = np.zeros((masks.shape[1], masks.shape[2]), np.uint64)
+        outlines = np.empty((shaped.shape[0], OUTLINE_COLUMNS))
+        canvas = np.zeros((masks.shape[1], rows), np.uint64)
+        first, last = np.empty(rows, np.int64), np.empty(rows, np.int64)
         for n in range(chunk * CHUNK, min(count, (chunk + 1) * CHUNK)):
-            _one_particle(poses[n], parent, fixed, axis, dof, shaped, ends, half_axes, cameras, masks, frames, outline, canvas,
-                          out[n])
+            _one_particle(poses[n], parent, fixed, axis, dof, shaped, ends, half_axes, cameras, masks, frames, outlines, canvas,
+                          first, last, out[n])
+
+
+def silhouette_counts(poses, parent, fixed, axis, dof, shaped, ends, half_axes, cameras, bits):
+    """Count the model's pixels, and those of them inside the mask, for every pose and camera.
+
+    Parameters
+    ----------
+    poses : (N, D) float64, metres and radians
+    parent, fixed, axis, dof, shaped, ends, half_axes : the fields of `body.BodyArrays`
+    cameras : (C, CAMERA_COLUMNS) float64, see `_kernels.outline`
+    bits : (C, H, words) uint64, packed masks, see `_kernels.bits`
+
+    Returns
+    -------
+    (N, C, 2) int64, pixels: |H| and |Z n H| in the notation of (12)
+    """
+    poses = np.ascontiguousarray(poses, dtype=np.float64)
+    out = np.empty((poses.shape[0], cameras.shape[0], 2), np.int64)
+    _over_particles(poses, parent, fixed, axis, dof, shaped, ends, half_axes, cameras, transpose_rows(bits), out)
     return out
