@@ -69,6 +69,20 @@ def test_masks_from_images_and_from_video_are_the_same(tmp_path):
         assert np.array_equal(source.read(4), masks[4])
 
 
+def test_masks_of_ones_are_not_taken_for_empty_ones(tmp_path):
+    mask = numbered_picture(5)[:, :, 0] > 127
+    cv2.imwrite(str(tmp_path / "0.png"), mask.view(np.uint8))
+    with pytest.raises(InputError, match="expected values 0 and 255, got 0 and 1; give threshold=0"):
+        open_masks(tmp_path / "%d.png")
+    assert np.array_equal(open_masks(tmp_path / "%d.png", threshold=0).read(0), mask)
+
+
+@pytest.mark.parametrize("threshold", [-1, 255])
+def test_a_threshold_that_no_mask_can_pass_is_refused(tmp_path, threshold):
+    with pytest.raises(InputError, match="0 to 254"):
+        open_masks(tmp_path / "%d.png", threshold=threshold)
+
+
 def test_a_video_is_opened_as_one(tmp_path):
     assert isinstance(open_pictures(write_video(tmp_path / "a.mp4", 2)), VideoReader)
 

@@ -49,7 +49,7 @@ def check_synchronised(sources: Sequence[PictureSource], *, to_shortest: bool = 
         raise _differ("the same number of frames", sources, map(str, counts), damaged or remedy)
     rates = [source.frame_rate for source in sources]
     if max(rates) > (1 + RATE_TOLERANCE) * min(rates):
-        remedy = "convert them to one rate"
+        remedy = "convert them to one rate, or state the rate of the image sequences"
         raise _differ("one frame rate", sources, (f"{rate:.6g}/s" for rate in rates), remedy)
     count = min(counts)
     _check_drift(sources, count)

@@ -128,4 +128,8 @@ def open_masks(
     """Open masks kept as images or as a video, white on black."""
     if not 0 <= threshold < 255:
         raise InputError(f"{path_or_pattern}: mask threshold", expected="0 to 254", got=str(threshold))
-    return MaskSource(open_pictures(path_or_pattern, frame_rate, colour=False, threads=threads), threshold)
+    pictures = open_pictures(path_or_pattern, frame_rate, colour=False, threads=threads)
+    if isinstance(pictures, ImageSequence) and threshold > 0 and pictures.read(0).max() == 1:
+        remedy = "give threshold=0 if 1 means foreground"
+        raise InputError(f"{path_or_pattern}: masks", expected="values 0 and 255", got="0 and 1", remedy=remedy)
+    return MaskSource(pictures, threshold)
