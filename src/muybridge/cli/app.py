@@ -16,6 +16,7 @@ COMMANDS = {
     "track": ("track:track", "Track the person that a job file describes."),
     "job": ("job:job", "Write a job for a folder in a known layout."),
     "evaluate": ("evaluate:evaluate", "Compare a run with the truth: error per joint in mm."),
+    "report": ("report:report", "Write a run's report and plots into its folder."),
     "doctor": ("doctor:doctor", "Say what is installed and whether it works."),
 }
 
