@@ -10,15 +10,15 @@ import pytest
 from muybridge.errors import InputError
 from muybridge.evaluation.joints import joint_errors, swapped_legs
 from muybridge.evaluation.names import JOINTS, mirrored
-from muybridge.evaluation.track import JointTrack
+from muybridge.io.run_folder import JointSeries
 
 
 def track(
     positions: np.ndarray, names: tuple[str, ...] = JOINTS, first: int = 0, deviation: float | None = None
-) -> JointTrack:
+) -> JointSeries:
     frames = first + np.arange(len(positions))
-    spread = None if deviation is None else np.full(positions.shape[:2], deviation)
-    return JointTrack(names, frames, frames / 50.0, positions, spread)
+    spread = np.full(positions.shape[:2], np.nan if deviation is None else deviation)
+    return JointSeries(names, frames, frames / 50.0, positions, spread)
 
 
 def standing(frames: int = 10) -> np.ndarray:

@@ -5,7 +5,8 @@
 | `alignment` | none, root, rigid, similarity: what is forgiven before distances are taken |
 | `joints` | errors per joint and frame, and the events a mean hides |
 | `calibration` | whether stated standard deviations are true |
-| `track` | joints over time; frames and joints two tracks share |
+| `matching` | frames and joints two series share |
+| `angles` | joint angles from joint positions |
 | `truth` | joints.csv, truth_joints.csv, TRC markers |
 | `names` | the 15 joints, and what other files call them |
 | `run` | `evaluate(run, truth)` |
@@ -13,9 +14,9 @@
 
 from muybridge.evaluation.alignment import ALIGNMENTS, align
 from muybridge.evaluation.joints import JointErrors, JointStatistics, joint_errors
+from muybridge.evaluation.matching import Overlap, match
 from muybridge.evaluation.names import JOINTS
 from muybridge.evaluation.run import evaluate
-from muybridge.evaluation.track import JointTrack, Overlap, match
 from muybridge.evaluation.truth import read_truth
 
 __all__ = [
@@ -23,7 +24,6 @@ __all__ = [
     "JOINTS",
     "JointErrors",
     "JointStatistics",
-    "JointTrack",
     "Overlap",
     "align",
     "evaluate",

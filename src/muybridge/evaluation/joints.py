@@ -12,8 +12,9 @@ import numpy as np
 from muybridge.errors import InputError
 from muybridge.evaluation.alignment import Alignment, align
 from muybridge.evaluation.calibration import DeviationCalibration, calibrate_deviations
+from muybridge.evaluation.matching import MatchBy, Overlap, match
 from muybridge.evaluation.names import mirrored, root_joints
-from muybridge.evaluation.track import JointTrack, MatchBy, Overlap, match
+from muybridge.io.run_folder import JointSeries
 
 LOST_FRAME_MM = 200.0
 """A frame whose mean error is above this has lost the person."""
@@ -69,7 +70,7 @@ class JointErrors:
     swapped_frames : tuple of int
         Frames in which left and right leg fit better exchanged.
     calibration : DeviationCalibration or None
-        None where the track states no deviations.
+        None where the estimate states no deviations.
     """
 
     alignment: str
@@ -115,18 +116,18 @@ class JointErrors:
 
 
 def joint_errors(
-    estimate: JointTrack,
-    truth: JointTrack,
+    estimate: JointSeries,
+    truth: JointSeries,
     alignment: Alignment = "none",
     *,
     match_by: MatchBy = "frame",
     offset: float = 0.0,
 ) -> JointErrors:
-    """Compare two tracks over the frames and joints they share.
+    """Compare two series over the frames and joints they share.
 
     Parameters
     ----------
-    estimate, truth : JointTrack
+    estimate, truth : JointSeries
     alignment : {"none", "root", "rigid", "similarity"}
     match_by : {"frame", "time"}
     offset : float
@@ -156,8 +157,8 @@ def joint_errors(
 
 
 def _summary(
-    estimate: JointTrack,
-    truth: JointTrack,
+    estimate: JointSeries,
+    truth: JointSeries,
     overlap: Overlap,
     alignment: str,
     aligned: np.ndarray,
@@ -167,7 +168,6 @@ def _summary(
     frame_means = _row_means(errors)
     worst = int(np.nanargmax(frame_means))
     known = errors[np.isfinite(errors)]
-    deviations = estimate.deviations
     return JointErrors(
         alignment=alignment,
         overlap=overlap,
@@ -193,7 +193,7 @@ def _summary(
         swapped_frames=tuple(
             int(frame) for frame in estimate.frames[swapped_legs(aligned, truth.positions, estimate.names)]
         ),
-        calibration=None if deviations is None else calibrate_deviations(errors, 1000.0 * deviations),
+        calibration=calibrate_deviations(errors, 1000.0 * estimate.sd),
     )
 
 

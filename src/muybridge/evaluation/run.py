@@ -7,7 +7,7 @@ from pathlib import Path
 from muybridge.errors import InputError
 from muybridge.evaluation.alignment import Alignment
 from muybridge.evaluation.joints import JointErrors, joint_errors
-from muybridge.evaluation.track import MatchBy
+from muybridge.evaluation.matching import MatchBy
 from muybridge.evaluation.truth import read_truth
 
 

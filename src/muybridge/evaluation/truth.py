@@ -9,12 +9,10 @@ import numpy as np
 
 from muybridge.errors import InputError
 from muybridge.evaluation.names import JOINTS, OFFICE_NAMES, joint_of_marker
-from muybridge.evaluation.track import JointTrack
-
-JOINTS_HEADER = ("frame", "time_s", "joint", "x_m", "y_m", "z_m")
+from muybridge.io.run_folder import JOINTS_HEADER, JointSeries, read_joints
 
 
-def read_truth(path: str | Path, *, axes: str | None = None) -> JointTrack:
+def read_truth(path: str | Path, *, axes: str | None = None) -> JointSeries:
     """Read true joints, whatever the file.
 
     Parameters
@@ -27,7 +25,7 @@ def read_truth(path: str | Path, *, axes: str | None = None) -> JointTrack:
 
     Returns
     -------
-    JointTrack
+    JointSeries
     """
     path = _file_of(Path(path))
     if path.suffix.lower() == ".trc":
@@ -38,8 +36,8 @@ def read_truth(path: str | Path, *, axes: str | None = None) -> JointTrack:
     except (OSError, UnicodeDecodeError, csv.Error) as error:
         raise InputError(f"truth {path}", expected="a readable table", got=str(error)) from error
     header = tuple(cell.strip() for cell in rows[0]) if rows else ()
-    if header[: len(JOINTS_HEADER)] == JOINTS_HEADER:
-        return _long_table(path, header, rows[1:])
+    if header == JOINTS_HEADER:
+        return read_joints(path)
     if any(name.endswith("_x") for name in header):
         return _wide_table(path, header, rows[1:])
     raise InputError(
@@ -49,7 +47,7 @@ def read_truth(path: str | Path, *, axes: str | None = None) -> JointTrack:
     )
 
 
-def read_marker_joints(path: Path, axes: str | None = None) -> JointTrack:
+def read_marker_joints(path: Path, axes: str | None = None) -> JointSeries:
     """The joints among a TRC file's markers, by their usual names; other markers are left out."""
     from muybridge.io.trc import read_trc
 
@@ -64,7 +62,9 @@ def read_marker_joints(path: Path, axes: str | None = None) -> JointTrack:
             f"markers of {path}", expected="names such as RHip, LKnee, Neck", got=", ".join(markers.names[:6])
         )
     names = tuple(name for name in JOINTS if name in found)
-    return JointTrack(names, markers.frames, markers.times, markers.positions[:, [found[name] for name in names]])
+    return _without_deviations(
+        names, markers.frames, markers.times, markers.positions[:, [found[name] for name in names]]
+    )
 
 
 def _file_of(path: Path) -> Path:
@@ -75,47 +75,7 @@ def _file_of(path: Path) -> Path:
     raise InputError(f"truth {path}", expected="a file, or a folder with truth_joints.csv or joints.csv", got="neither")
 
 
-def _long_table(path: Path, header: tuple[str, ...], rows: list[list[str]]) -> JointTrack:
-    """One row a frame and joint, metres: joints.csv. An empty cell is a missing value."""
-    joint_column = header.index("joint")
-    numeric = [header.index(name) for name in ("frame", "time_s", "x_m", "y_m", "z_m")]
-    deviation = header.index("sd_m") if "sd_m" in header else None
-    try:
-        values = np.array([[_number(row[i]) for i in numeric] for row in rows]).reshape(-1, 5)
-        spread = np.array([_number(row[deviation]) for row in rows]) if deviation is not None else None
-    except (ValueError, IndexError) as error:
-        raise InputError(f"joints in {path}", expected="numbers in every row", got=str(error)) from error
-    return assemble_track(
-        [row[joint_column].strip() for row in rows], values[:, 0], values[:, 1], values[:, 2:], spread
-    )
-
-
-def assemble_track(
-    joints: list[str], frames: np.ndarray, times: np.ndarray, positions: np.ndarray, deviations: np.ndarray | None
-) -> JointTrack:
-    """Rows of frame and joint, in any order, as one track.
-
-    Parameters
-    ----------
-    joints : list of str, length R
-    frames, times : (R,)
-    positions : (R, 3) float64, metres
-    deviations : (R,) float64, metres, or None
-    """
-    names = tuple(dict.fromkeys(joints))
-    column_of = {name: column for column, name in enumerate(names)}
-    numbers, first, row = np.unique(np.asarray(frames).astype(np.int64), return_index=True, return_inverse=True)
-    column = np.array([column_of[name] for name in joints], dtype=np.int64)
-    points = np.full((len(numbers), len(names), 3), np.nan)
-    points[row, column] = positions
-    spread = None
-    if deviations is not None:
-        spread = np.full(points.shape[:2], np.nan)
-        spread[row, column] = deviations
-    return JointTrack(names, numbers, np.asarray(times, float)[first], points, spread)
-
-
-def _wide_table(path: Path, header: tuple[str, ...], rows: list[list[str]]) -> JointTrack:
+def _wide_table(path: Path, header: tuple[str, ...], rows: list[list[str]]) -> JointSeries:
     """One row a frame, three columns a joint, millimetres: truth_joints.csv of rendered office scenes."""
     try:
         values = np.array([[_number(cell) for cell in row] for row in rows]).reshape(-1, len(header))
@@ -129,7 +89,13 @@ def _wide_table(path: Path, header: tuple[str, ...], rows: list[list[str]]) -> J
     columns = [[column_of[f"{stem}_{axis}"] for axis in "xyz"] for stem in known.values()]
     frames = values[:, column_of["frame"]] if "frame" in column_of else np.arange(len(values))
     times = values[:, column_of["time_s"]] if "time_s" in column_of else np.full(len(values), np.nan)
-    return JointTrack(tuple(known), frames.astype(np.int64), times, values[:, columns] / 1000.0)
+    return _without_deviations(tuple(known), frames.astype(np.int64), times, values[:, columns] / 1000.0)
+
+
+def _without_deviations(
+    names: tuple[str, ...], frames: np.ndarray, times: np.ndarray, positions: np.ndarray
+) -> JointSeries:
+    return JointSeries(names, frames, times, positions, np.full(positions.shape[:2], np.nan))
 
 
 def _number(cell: str) -> float:

@@ -98,7 +98,16 @@ def plot_angle_pair(
                 label=label,
             )
     ax.margins(x=0.0)
+    _fit_to_curves(ax)
     return artists
+
+
+def _fit_to_curves(ax: Axes) -> None:
+    """Limits from the curves: a band that a few uncertain frames blow up must not flatten everything else."""
+    values = np.concatenate([np.asarray(line.get_ydata(), float) for line in ax.get_lines()])
+    values = values[np.isfinite(values)]
+    margin = max(10.0, 0.15 * float(np.ptp(values)))
+    ax.set_ylim(float(values.min()) - margin, float(values.max()) + margin)
 
 
 def continuous_degrees(angle: np.ndarray, near: np.ndarray | None = None) -> np.ndarray:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -65,6 +65,11 @@ def _draw_camera(ax: Axes, name: str, position: np.ndarray, direction: np.ndarra
     heading = np.degrees(np.arctan2(flat[1], flat[0]))
     artists: list[Artist] = list(ax.plot(*position[:2], marker=(3, 0, heading + 90), color=theme.middle, markersize=11))
     across = "left" if flat[0] < -0.5 else "right" if flat[0] > 0.5 else "center"
-    place = {"xytext": (-10 * flat[0], -12 * flat[1]), "textcoords": "offset points", "ha": across, "va": "center"}
+    place: dict[str, Any] = {
+        "xytext": (-10 * flat[0], -12 * flat[1]),
+        "textcoords": "offset points",
+        "ha": across,
+        "va": "center",
+    }
     label = ax.annotate(name, (position[0], position[1]), **place, fontsize=8, color=theme.muted)
     return [*artists, label]

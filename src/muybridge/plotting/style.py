@@ -10,7 +10,7 @@ import io
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 if TYPE_CHECKING:
     import numpy as np
@@ -92,7 +92,7 @@ def styled(theme: Theme = LIGHT) -> Iterator[None]:
     """Within this context new figures and axes have the theme's look."""
     import matplotlib as mpl
 
-    with mpl.rc_context(_settings(theme)):
+    with mpl.rc_context(cast(Any, _settings(theme))):
         yield
 
 
@@ -125,7 +125,12 @@ def title(ax: Axes, text: str, detail: str = "", theme: Theme = LIGHT) -> None:
     """A heading, and under it in a quieter tone what is shown in which unit."""
     ax.set_title(text, loc="left", color=theme.ink, fontweight="bold", fontsize=10, pad=20 if detail else 8)
     if detail:
-        place = {"xy": (0, 1), "xycoords": "axes fraction", "xytext": (0, 7), "textcoords": "offset points"}
+        place: dict[str, Any] = {
+            "xy": (0, 1),
+            "xycoords": "axes fraction",
+            "xytext": (0, 7),
+            "textcoords": "offset points",
+        }
         ax.annotate(detail, **place, color=theme.muted, fontsize=8.5)
 
 

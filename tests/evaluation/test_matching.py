@@ -1,4 +1,4 @@
-"""Tracks validate themselves; matching pairs what belongs together and says what it left out."""
+"""Matching pairs what belongs together and says what it left out."""
 
 from __future__ import annotations
 
@@ -6,25 +6,14 @@ import numpy as np
 import pytest
 
 from muybridge.errors import InputError
-from muybridge.evaluation.track import JointTrack, match
+from muybridge.evaluation.matching import match
+from muybridge.io.run_folder import JointSeries
 
 
-def track(frames, names=("pelvis", "left_knee"), rate=50.0, shift_s=0.0) -> JointTrack:
+def track(frames, names=("pelvis", "left_knee"), rate=50.0, shift_s=0.0) -> JointSeries:
     frames = np.asarray(frames)
     positions = np.zeros((len(frames), len(names), 3)) + frames[:, None, None]
-    return JointTrack(tuple(names), frames, frames / rate + shift_s, positions)
-
-
-class TestJointTrack:
-    def test_wrong_shape(self):
-        with pytest.raises(InputError, match="joint positions"):
-            JointTrack(("pelvis",), np.arange(3), np.zeros(3), np.zeros((3, 2, 3)))
-        with pytest.raises(InputError, match="joint deviations"):
-            JointTrack(("pelvis",), np.arange(3), np.zeros(3), np.zeros((3, 1, 3)), np.zeros((3, 2)))
-
-    def test_unordered_frames(self):
-        with pytest.raises(InputError, match="rising frame numbers"):
-            track([0, 2, 1])
+    return JointSeries(tuple(names), frames, frames / rate + shift_s, positions, np.full(positions.shape[:2], np.nan))
 
 
 class TestMatchByFrame:
@@ -63,7 +52,7 @@ class TestMatchByTime:
             match(track(range(10)), track(range(10), shift_s=9.0), by="time")
 
     def test_no_times(self):
-        timeless = JointTrack(("pelvis",), np.arange(3), np.full(3, np.nan), np.zeros((3, 1, 3)))
+        timeless = JointSeries(("pelvis",), np.arange(3), np.full(3, np.nan), np.zeros((3, 1, 3)), np.zeros((3, 1)))
         with pytest.raises(InputError, match="match by frame"):
             match(track(range(3)), timeless, by="time")
 

@@ -1,4 +1,4 @@
-"""Joints over time, and which frames and joints two such tracks share."""
+"""Which frames and joints two series share."""
 
 from __future__ import annotations
 
@@ -8,55 +8,14 @@ from typing import Literal
 import numpy as np
 
 from muybridge.errors import InputError
+from muybridge.io.run_folder import JointSeries
 
 MatchBy = Literal["frame", "time"]
 
 
 @dataclass(frozen=True)
-class JointTrack:
-    """Joints of one person over time.
-
-    Attributes
-    ----------
-    names : tuple of str
-        J joints.
-    frames : (T,) int64
-        Frame numbers from 0, rising.
-    times : (T,) float64, seconds
-        NaN where the source knows no times.
-    positions : (T, J, 3) float64, metres, world
-        NaN where missing.
-    deviations : (T, J) float64, metres, or None
-        One isotropic standard deviation a joint, the same along each axis.
-    """
-
-    names: tuple[str, ...]
-    frames: np.ndarray
-    times: np.ndarray
-    positions: np.ndarray
-    deviations: np.ndarray | None = None
-
-    def __post_init__(self) -> None:
-        shape = (len(self.frames), len(self.names), 3)
-        if self.positions.shape != shape or len(self.times) != shape[0]:
-            raise InputError("joint positions", expected=f"shape {shape}", got=f"{self.positions.shape}")
-        if self.deviations is not None and self.deviations.shape != shape[:2]:
-            raise InputError("joint deviations", expected=f"shape {shape[:2]}", got=f"{self.deviations.shape}")
-        if np.any(np.diff(self.frames) <= 0):
-            raise InputError(
-                "frames of a joint track", expected="rising frame numbers", got="repeated or unordered ones"
-            )
-
-    def take(self, rows: np.ndarray, names: tuple[str, ...]) -> JointTrack:
-        """The given rows and joints alone."""
-        columns = np.array([self.names.index(name) for name in names], dtype=np.int64)
-        deviations = None if self.deviations is None else self.deviations[np.ix_(rows, columns)]
-        return JointTrack(names, self.frames[rows], self.times[rows], self.positions[np.ix_(rows, columns)], deviations)
-
-
-@dataclass(frozen=True)
 class Overlap:
-    """What two tracks share, and what was left out of the comparison."""
+    """What two series share, and what was left out of the comparison."""
 
     by: str
     frames: int
@@ -68,7 +27,7 @@ class Overlap:
 
     @property
     def is_partial(self) -> bool:
-        """True where frames of either track had no partner."""
+        """True where frames of either series had no partner."""
         return self.frames < max(self.estimate_frames, self.truth_frames)
 
     def describe(self) -> str:
@@ -83,18 +42,18 @@ class Overlap:
 
 
 def match(
-    estimate: JointTrack,
-    truth: JointTrack,
+    estimate: JointSeries,
+    truth: JointSeries,
     by: MatchBy = "frame",
     *,
     offset: float = 0.0,
     tolerance_s: float | None = None,
-) -> tuple[JointTrack, JointTrack, Overlap]:
-    """The frames and joints that both tracks have, in the same order.
+) -> tuple[JointSeries, JointSeries, Overlap]:
+    """The frames and joints that both series have, in the same order.
 
     Parameters
     ----------
-    estimate, truth : JointTrack
+    estimate, truth : JointSeries
     by : {"frame", "time"}
         Equal frame numbers, or nearest times.
     offset : float
@@ -104,7 +63,7 @@ def match(
 
     Returns
     -------
-    estimate, truth : JointTrack
+    estimate, truth : JointSeries
         Of equal shape.
     overlap : Overlap
 
@@ -135,16 +94,22 @@ def match(
         tuple(name for name in estimate.names if name not in names),
         tuple(name for name in truth.names if name not in names),
     )
-    return estimate.take(rows[0], names), truth.take(rows[1], names), overlap
+    return take(estimate, rows[0], names), take(truth, rows[1], names), overlap
 
 
-def _rows_by_frame(estimate: JointTrack, truth: JointTrack, offset: float) -> tuple[np.ndarray, np.ndarray]:
+def take(series: JointSeries, rows: np.ndarray, names: tuple[str, ...]) -> JointSeries:
+    """The given rows and joints alone."""
+    cells = np.ix_(rows, np.array([series.names.index(name) for name in names], dtype=np.int64))
+    return JointSeries(names, series.frames[rows], series.times[rows], series.positions[cells], series.sd[cells])
+
+
+def _rows_by_frame(estimate: JointSeries, truth: JointSeries, offset: float) -> tuple[np.ndarray, np.ndarray]:
     _, rows, true_rows = np.intersect1d(estimate.frames, truth.frames + int(offset), return_indices=True)
     return rows, true_rows
 
 
 def _rows_by_time(
-    estimate: JointTrack, truth: JointTrack, offset: float, tolerance_s: float | None
+    estimate: JointSeries, truth: JointSeries, offset: float, tolerance_s: float | None
 ) -> tuple[np.ndarray, np.ndarray]:
     """Each true frame with the estimated frame nearest in time, where both choose each other."""
     if np.isnan(estimate.times).any() or np.isnan(truth.times).any():
@@ -159,7 +124,7 @@ def _rows_by_time(
     return nearest[keep], true_rows[keep]
 
 
-def _advice(estimate: JointTrack, truth: JointTrack, by: MatchBy) -> str:
+def _advice(estimate: JointSeries, truth: JointSeries, by: MatchBy) -> str:
     if not len(estimate.frames) or not len(truth.frames):
         return "one of them is empty"
     if not set(estimate.names) & set(truth.names):
