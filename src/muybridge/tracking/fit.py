@@ -58,15 +58,15 @@ def fit_body(model: ImageLikelihood, observations: Sequence[Observation], poses:
     poses : (F, D) float64
         Where the person is about; the fit refines them.
     """
-    problem = _Problem(model, config)
+    problem = _Problem(model, config, np.asarray(poses)[:, :3])
     unknown = np.zeros(problem.size)
     poses = np.array(poses, float)
     given = poses.copy()
     residual = np.inf
     for spread in config.spreads:
         current = problem.apply(unknown)
-        shape_h = np.diag(problem.prior)
-        shape_g = -problem.prior * unknown
+        shape_h = problem.prior.copy()
+        shape_g = -problem.prior @ unknown
         parts = []
         squares = total = 0.0
         for observation, pose, start in zip(observations, poses, given, strict=True):
@@ -104,7 +104,7 @@ def fit_body(model: ImageLikelihood, observations: Sequence[Observation], poses:
 class _Problem:
     """The shared unknowns: log factors of lengths, widths, depths, then camera shifts in reduced pixels."""
 
-    def __init__(self, model: ImageLikelihood, config: FitConfig) -> None:
+    def __init__(self, model: ImageLikelihood, config: FitConfig, places: np.ndarray) -> None:
         self.model, self.config = model, config
         self.lengths = model.body.length_groups if config.lengths else ()
         self.girths = model.body.radius_groups if config.girths else ()
@@ -113,10 +113,12 @@ class _Problem:
         self.ends = np.cumsum(counts)
         self.size = int(self.ends[-1])
         focal = np.sqrt(model.cameras[:, 0] * model.cameras[:, 1])
-        depth = np.full(len(focal), 4.0)
+        depth = np.maximum(0.5, places.mean(axis=0) @ model.cameras[:, 17:20].T + model.cameras[:, 22])
         shift_sd = np.repeat(config.shift_sd * focal / depth, 2)[: 2 * views]
         sd = np.concatenate([np.full(counts[0], config.length_sd), np.full(counts[1] + counts[2], config.girth_sd), shift_sd])
-        self.prior = sd**-2.0
+        self.prior = np.diag(sd**-2.0)
+        if views:
+            self.prior[self.ends[2] :, self.ends[2] :] += _gauge(model, places) / np.median(shift_sd) ** 2 * 1e4
         self.largest = np.concatenate([np.full(sum(counts[:3]), 0.1), np.full(2 * views, 4.0)])
         self.groups = [segment.radius_group for segment in model.body.segments]
 
@@ -170,6 +172,16 @@ class _Problem:
         named = [dict(zip(names, np.exp(values).tolist(), strict=True))
                  for names, values in ((self.lengths, lengths), (self.girths, widths), (self.girths, depths))]
         return Fit(*named, full, poses, float(residual))
+
+
+def _gauge(model: ImageLikelihood, places: np.ndarray) -> np.ndarray:
+    """(2C, 2C) projector on the shifts that only move the world: the same as if the person stood elsewhere."""
+    centre = places.mean(axis=0)
+    step = 1e-3
+    moved = [np.concatenate([c.world_to_pixel(centre + step * axis) - c.world_to_pixel(centre) for c in model.rig])
+             for axis in np.eye(3)]
+    basis = np.linalg.qr(np.column_stack(moved) / np.repeat(model.reductions, 2)[:, None])[0]
+    return basis @ basis.T
 
 
 def _segment_ends(body: Body, pose: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
