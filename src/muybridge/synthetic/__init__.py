@@ -1,0 +1,13 @@
+"""Scenes whose truth is known: a skinned person in a room, rendered here, with exact joints.
+
+================  =========================================================================================
+`scene`           `Scene`, `demo_scene(seed)`, `render(scene, frame)`, `empty(scene, n)`, `truth(scene)`
+`write`           `write_scene(scene, folder)`: videos, empty room, masks, calibration, truth, measures, job
+`skinning`        `load_figure(name)`: the baked people; bones, linear blend skinning, the 15 joints
+`motion`          `Motion`, `perform(figure, motion)`: walk, wave, crouch
+`rasterise`       `draw(camera, mesh ...)`: z-buffer, solid textures, Lambert shading
+`room`            `Room`, `picture(room, camera)`: floor, walls, their light
+`shadow`          the person's shadow on the floor
+`textures`        noise and cloth
+================  =========================================================================================
+"""

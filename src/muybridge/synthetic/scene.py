@@ -90,20 +90,33 @@ class Stage:
 
 
 def demo_scene(seed: int = 0, *, duration: float = 3.0, rate: float = 30.0) -> Scene:
-    """A man in a striped shirt walks a bend through a room, seen by three cameras of 640 x 480."""
+    """A man in a striped shirt walks a bend through a room, seen whole by three cameras of 640 x 480."""
     rng = np.random.default_rng([seed, 20051])
-    side = rng.choice([-1.0, 1.0])
-    motion = Motion(
-        "walk",
-        duration,
-        rate,
-        heading=rng.uniform(-np.pi, np.pi),
-        turn_rate=side * rng.uniform(0.35, 0.55),
-        cadence=rng.uniform(0.85, 0.95),
-        vigour=rng.uniform(0.95, 1.05),
-        seed=seed,
-    )
-    return Scene(ring(rng, 3), motion=motion, room=Room(seed=seed), seed=seed)
+    figure = load_figure("man")
+    for _ in range(200):
+        motion = Motion(
+            "walk",
+            duration,
+            rate,
+            heading=rng.uniform(-np.pi, np.pi),
+            turn_rate=float(rng.choice([-1.0, 1.0])) * rng.uniform(0.35, 0.6),
+            cadence=rng.uniform(0.80, 0.92),
+            vigour=rng.uniform(0.92, 1.05),
+            seed=seed,
+        )
+        rig = ring(rng, 3)
+        if _whole(rig, perform(figure, motion).joints):
+            return Scene(rig, motion=motion, room=Room(seed=seed), seed=seed)
+    raise InputError("demo scene", expected="a clip short enough to stay in view", got=f"{duration:g} s")
+
+
+def _whole(rig: Rig, joints: np.ndarray, margin: float = 24.0) -> bool:
+    """Whether all joints (T, J, 3) stay `margin` pixels inside every picture."""
+    for camera in rig:
+        pixels = camera.world_to_pixel(joints)
+        if not ((pixels > margin) & (pixels < np.array(camera.size) - margin)).all():
+            return False
+    return True
 
 
 def ring(rng: np.random.Generator, count: int, *, radius: float = 3.9, size: tuple[int, int] = (640, 480)) -> Rig:
