@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import struct
 from fractions import Fraction
 from pathlib import Path
 
@@ -48,8 +49,6 @@ def write_video(
         stream.pix_fmt = "yuvj420p" if codec == "mjpeg" else "yuv420p"
         stream.codec_context.gop_size = gop
         stream.codec_context.time_base = Fraction(1, 1000) if ticks else Fraction(1, rate)
-        if rotation:
-            stream.set_display_rotation(rotation)
         for number, picture in enumerate(pictures):
             frame = av.VideoFrame.from_ndarray(picture, format="bgr24").reformat(format=stream.pix_fmt)
             frame.time_base = stream.codec_context.time_base
@@ -58,4 +57,15 @@ def write_video(
                 container.mux(packet)
         for packet in stream.encode(None):
             container.mux(packet)
+    if rotation:
+        _turn_mp4(path, rotation)
     return path
+
+
+def _turn_mp4(path: Path, degrees: int) -> None:
+    """Write a rotation, counter-clockwise, into the matrix of the track header (ISO 14496-12, 8.3.2)."""
+    cosine, sine = {90: (0, 1), 180: (-1, 0), -90: (0, -1)}[degrees]
+    data = bytearray(path.read_bytes())
+    matrix = data.index(b"tkhd") + 44  # behind type, flags, times, track, duration, layer, group, volume
+    data[matrix : matrix + 20] = struct.pack(">5i", cosine << 16, -sine << 16, 0, sine << 16, cosine << 16)
+    path.write_bytes(bytes(data))
