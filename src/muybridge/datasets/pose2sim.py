@@ -34,22 +34,23 @@ def pose2sim_recording(folder: Path | str) -> Recording:
     folder = Path(folder).absolute()
     if not folder.is_dir():
         raise InputError(f"Pose2Sim folder {folder}", expected="a folder", got="none of that name")
-    project = read_config(folder).get("project", {})
+    return recording_of_parts(folder, read_config(folder).get("project", {}))
+
+
+def recording_of_parts(folder: Path, project: dict[str, Any]) -> Recording:
+    """The same with the `[project]` table given, for folders that have no Config.toml."""
     pictures = find_pictures(folder / "videos")
     calibration = find_calibration(folder)
     cameras, counts, changed = [], [], False
     for camera, path in match_cameras(read_rig(calibration), pictures):
         fitted, count = _fit_and_count(camera, path)
         changed |= fitted != camera
-        cameras.append(fitted)
+        cameras.append((fitted, path))
         counts.append(count)
     return Recording(
         name=folder.name,
-        rig=Rig(tuple(cameras)),
-        cameras=tuple(
-            CameraFiles(camera.name, path, plate=_plate(folder, path))
-            for camera, path in match_cameras(Rig(tuple(cameras)), pictures)
-        ),
+        rig=Rig(tuple(camera for camera, _ in cameras)),
+        cameras=tuple(CameraFiles(camera.name, path, plate=_plate(folder, path)) for camera, path in cameras),
         frame_count=min(counts),
         frame_rate=_frame_rate(project),
         calibration=() if changed else (calibration,),
@@ -113,7 +114,9 @@ def find_calibration(folder: Path) -> Path:
 def match_cameras(rig: Rig, pictures: list[Path]) -> list[tuple[Camera, Path]]:
     """Each camera with its pictures: by name where all names agree (cam_01 and cam01.mp4), else by order."""
     if len(rig) != len(pictures):
-        raise InputError("Pose2Sim videos", expected=f"{len(rig)}, as many as calibrated cameras", got=str(len(pictures)))
+        raise InputError(
+            "Pose2Sim videos", expected=f"{len(rig)}, as many as calibrated cameras", got=str(len(pictures))
+        )
     by_name = {_plain(path.stem): path for path in pictures}
     if len(by_name) == len(pictures) and {_plain(name) for name in rig.names} == set(by_name):
         return [(camera, by_name[_plain(camera.name)]) for camera in rig]

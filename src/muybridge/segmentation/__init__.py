@@ -16,6 +16,7 @@ from muybridge.segmentation.gaussian import GaussianBackground, GaussianConfig
 from muybridge.segmentation.hue_key import HueKey, HueKeyConfig
 from muybridge.segmentation.pictures import median_picture, reduce_image
 from muybridge.segmentation.plate import PlateBackground, PlateConfig
+from muybridge.segmentation.plate_making import make_plate
 from muybridge.segmentation.registry import BACKGROUND_MODELS, BackgroundModel, build_background
 from muybridge.segmentation.scores import mask_scores
 from muybridge.segmentation.segmenter import Segmenter, build_segmenter
@@ -36,6 +37,7 @@ __all__ = [
     "build_background",
     "build_segmenter",
     "clean",
+    "make_plate",
     "mask_scores",
     "median_picture",
     "near",

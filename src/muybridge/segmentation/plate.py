@@ -14,23 +14,23 @@ from numpy.typing import NDArray
 from muybridge.errors import InputError
 from muybridge.segmentation.pictures import check_same_shape, with_channels
 
-DEFAULT_THRESHOLDS = {"rgb": 20.0, "lab": 7.0, "grey": 8.0}
+DEFAULT_THRESHOLDS = {"lab": 6.0, "rgb": 20.0, "grey": 8.0}
 """For a quarter of the resolution (grey: a half), where noise has averaged out; about twice that at full resolution.
 
-Means of 24 real pictures from four cameras against capsules round detected joints, shadows removed, cleaned:
+Means over 24 real pictures of four cameras, against capsules round detected joints; shadows removed, cleaned:
 
 ==========  ======  =========  ====
 space       recall  precision  IoU
 ==========  ======  =========  ====
-rgb 16      0.84    0.78       0.67
-rgb 20      0.82    0.82       0.70
-rgb 30      0.78    0.85       0.69
-lab 5       0.83    0.79       0.68
-lab 7       0.80    0.84       0.69
-lab 12      0.73    0.87       0.66
+lab 5       0.88    0.82       0.74
+lab 6       0.88    0.83       0.74
+lab 10      0.84    0.85       0.74
+rgb 16      0.88    0.82       0.74
+rgb 20      0.87    0.83       0.73
+rgb 30      0.85    0.84       0.73
 ==========  ======  =========  ====
 
-`lab` lets less changing light through (0.65 against 0.63 in the worst camera), `rgb` loses less of dark clothes.
+The capsules are no truth either: 0.77 is what perfect-looking masks reach. `lab` lets less shadow and changing light through.
 """
 
 
@@ -38,8 +38,8 @@ lab 12      0.73    0.87       0.66
 class PlateConfig:
     """Settings of the plate model."""
 
-    space: str = "rgb"
-    """`rgb` or `lab`; grey pictures have only one and ignore it."""
+    space: str = "lab"
+    """`lab` or `rgb`; grey pictures have only one and ignore it."""
     threshold: float | None = None
     """Difference above which a pixel is foreground: grey values (rgb) or CIE Lab units. None: DEFAULT_THRESHOLDS."""
     lightness_weight: float = 0.5
