@@ -24,8 +24,7 @@ demo: $(READY)
 
 demo-real: $(READY)
 	$(BIN)/muybridge sample beam --out samples/beam
-	$(BIN)/muybridge track samples/beam/job.toml --out $(OUT)/beam --seed $(SEED)
-	$(BIN)/muybridge evaluate $(OUT)/beam --truth samples/beam/reference.trc
+	$(BIN)/muybridge track samples/beam/JOB.toml --out $(OUT)/beam --seed $(SEED)
 
 test: lint layers
 	$(BIN)/python -m pytest

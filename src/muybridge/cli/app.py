@@ -13,8 +13,10 @@ from muybridge.errors import MuybridgeError
 
 #: name -> module and function, and the line that --help shows without importing it.
 COMMANDS = {
+    "demo": ("demo:demo", "Render a scene with known truth, track it, and say how far off the track is."),
     "track": ("track:track", "Track the person that a job file describes."),
     "job": ("job:job", "Write a job for a folder in a known layout."),
+    "sample": ("sample:sample", "Get a real recording to try things on."),
     "evaluate": ("evaluate:evaluate", "Compare a run with the truth: error per joint in mm."),
     "report": ("report:report", "Write a run's report and plots into its folder."),
     "doctor": ("doctor:doctor", "Say what is installed and whether it works."),

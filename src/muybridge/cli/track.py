@@ -23,6 +23,7 @@ def track(
     out: Path | None = None,
     seed: int | None = None,
     set_: Overrides = None,
+    overlay: bool = True,
     reporting: Reporting = DEFAULT_REPORTING,
 ) -> int:
     """Track the person that a job file describes.
@@ -37,25 +38,30 @@ def track(
         Wins over the job's seed.
     set_
         One setting of the job, KEY=VALUE, such as filter.particles=1000; may be repeated.
+    overlay
+        Draw the run over the pictures of each camera.
     """
     from muybridge.io.job import check_settings, read
 
     overrides = [*(set_ or []), *([] if seed is None else [f"seed={seed}"])]
     described = read(job, overrides)
     check_settings(described)
-    return run_and_tell(described, out or Path("runs") / described.name, reporting)
+    return run_and_tell(described, out or Path("runs") / described.name, reporting, overlay=overlay)
 
 
-def run_and_tell(described: Job, out: Path, reporting: Reporting) -> int:
-    """Track, and say what came of it; 3 where the person was lost at the end."""
+def run_and_tell(job: Job, out: Path, reporting: Reporting, *, overlay: bool = True) -> int:
+    """Track, and say what came of it; LOST where the person was lost for good."""
+    from muybridge.cli.aftermath import compare, write_overlays
     from muybridge.tracking import run
 
     try:
-        with reporting.progress(described.name) as progress:
-            summary = run(described, out, progress=progress)
+        with reporting.progress(job.name) as progress:
+            summary = run(job, out, progress=progress)
+        reporting.say(f"{summary.frames} frames, {summary.status}")
+        overlays = write_overlays(job, out, reporting) if overlay else []
+        comparison = compare(out, job.reference.file if job.reference else None, reporting)
     except KeyboardInterrupt:
-        raise KeyboardInterrupt(f"interrupted; the finished frames are kept in {out}") from None
-    record = asdict(summary)
-    reporting.say(f"{summary.frames} frames, {summary.status}; results in {out}")
-    reporting.finish({"out": out, **record})
+        raise KeyboardInterrupt(f"interrupted; what was finished is kept in {out}") from None
+    reporting.say(f"results in {out}")
+    reporting.finish({"out": out, **asdict(summary), "overlays": overlays, **comparison})
     return LOST if summary.status == "lost" else DONE

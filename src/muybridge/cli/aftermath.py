@@ -1,0 +1,78 @@
+"""What follows a run: overlays, report, plots, and the comparison with a truth where there is one."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from muybridge.cli.reporting import Reporting
+from muybridge.errors import InputError
+
+if TYPE_CHECKING:
+    from muybridge.body import Body
+    from muybridge.cameras import Rig
+    from muybridge.io.job import Job
+
+CAMERAS_FILE, BODY_FILE = "cameras.json", "body.toml"
+"""In the run folder: the cameras and the body as tracking used them in the end, corrected and fitted."""
+
+
+def write_overlays(job: Job, out: Path, reporting: Reporting) -> list[Path]:
+    """One video a camera; a camera whose pictures cannot be read any more is left out, and said so."""
+    from muybridge.io.video import open_pictures
+    from muybridge.plotting.overlay_video import write_overlay
+
+    rig, body = cameras_of(job, out), body_of(out)
+    written = []
+    for camera in job.cameras:
+        try:
+            with open_pictures(camera.pictures, camera.frame_rate) as pictures:
+                with reporting.progress(f"overlay {camera.name}") as progress:
+                    total = pictures.frame_count
+                    video = write_overlay(
+                        out,
+                        rig[camera.name],
+                        pictures,
+                        body,
+                        progress=lambda done, of=total, say=progress: say(done, of),
+                    )
+                written.append(video)
+        except InputError as error:
+            reporting.say(f"no overlay of {camera.name}: {error}")
+    return written
+
+
+def compare(out: Path, truth: Path | None, reporting: Reporting) -> dict[str, Any]:
+    """Write the report and plots; say how far off the run is where there is a truth, and return that for --json."""
+    from muybridge.evaluation import evaluate
+    from muybridge.report import write_report
+    from muybridge.report.content import gather
+    from muybridge.report.plots import write_plots
+
+    write_report(out, truth)
+    write_plots(out, gather(out, truth))
+    if truth is None:
+        return {}
+    errors = evaluate(out, truth)
+    (out / "errors.txt").write_text(errors.to_table() + "\n", encoding="utf-8")
+    reporting.say(
+        f"mean joint error {errors.mean_mm:.1f} mm (alignment {errors.alignment}), per joint in {out}/errors.txt"
+    )
+    return {"errors": errors.to_dict()}
+
+
+def cameras_of(job: Job, out: Path) -> Rig:
+    """The run's cameras: as it left them, else as the job gives them."""
+    from muybridge.cameras.readers import read_rig
+
+    if (out / CAMERAS_FILE).is_file():
+        return read_rig(out / CAMERAS_FILE)
+    calibration = job.calibration
+    return read_rig(calibration.file or calibration.files, calibration.unit, up=calibration.up)
+
+
+def body_of(out: Path) -> Body | None:
+    """The run's body; None where it left none, and only joints can be drawn."""
+    from muybridge.body import read_body
+
+    return read_body(out / BODY_FILE) if (out / BODY_FILE).is_file() else None
