@@ -1,4 +1,4 @@
-"""What every filter must do, whatever it does inside. Used on the registry, and on the skeleton in docs/add-a-filter.md."""
+"""What every filter must do, whatever it does inside: for the registry and the skeleton in docs/add-a-filter.md."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from filters.oracles import GaussianLikelihood
 
+from filters.oracles import GaussianLikelihood
 from muybridge.errors import InputError
 from muybridge.filters import ConstantVelocity, GaussianWalk, Method, state_from_arrays, state_to_arrays
 
@@ -182,7 +182,7 @@ def check_bad_likelihood_is_named(method: Method) -> None:
 
 
 def check_follows_a_motion(method: Method) -> None:
-    """Target moves half a noise unit a frame, likelihood sd 1 unit, four dimensions: error stays below 1 unit a component.
+    """Target moves half a noise unit a frame, likelihood sd 1 unit, four dimensions: mean error below 1 unit.
 
     Standing still for these 30 frames ends 15 units away; the posterior's own sd is below .7.
     """

@@ -35,7 +35,7 @@ class Kalman:
 
 
 def t_of(replicates: np.ndarray, truth: np.ndarray | float) -> np.ndarray:
-    """Student's t of independent replicates (R, ...) against the truth: the Monte-Carlo error is taken from their spread."""
+    """Student's t of independent replicates (R, ...) against the truth; their spread is the Monte-Carlo error."""
     replicates = np.asarray(replicates, dtype=np.float64)
     with np.errstate(divide="ignore"):  # replicates that all agree on a wrong value: infinitely far off
         return (replicates.mean(axis=0) - truth) / (replicates.std(axis=0, ddof=1) / np.sqrt(len(replicates)))

@@ -10,8 +10,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from filters.oracles import GaussianLikelihood, Kalman, agrees
 
+from filters.oracles import GaussianLikelihood, Kalman, agrees
 from muybridge.filters import GaussianWalk, Weights, annealed, condensation, demc, standard_deviation, tempered
 
 WALK_SD, SD, START_SD = 0.7, 0.5, 1.0

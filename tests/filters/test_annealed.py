@@ -6,8 +6,8 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 import pytest
-from filters.oracles import GaussianLikelihood
 
+from filters.oracles import GaussianLikelihood
 from muybridge.errors import InputError
 from muybridge.filters import GaussianWalk, annealed, condensation
 from muybridge.filters.schedule import TOLERANCE
@@ -61,7 +61,7 @@ def test_every_layer_reaches_the_survival_rate() -> None:
 
 
 def test_noise_shrinks_by_the_layer() -> None:
-    """Without selection (survival near 1) variances add: 1, 1 + 1/4, + 1/16, + 1/64, within 6 sigma of 300 x 3 draws."""
+    """Without selection (survival near 1) variances add: 1 + 1/4 + 1/16 + 1/64, within 6 sigma of 300 x 3 draws."""
     _, _, asked = run(replace(CONFIG, survival=0.999999))
     variances = [layer.var() for layer in asked[:4]]
     truth = np.cumsum(0.25 ** np.arange(4))
@@ -79,8 +79,10 @@ def test_blocks_perturb_only_their_components_and_shrink_by_visit() -> None:
 
 
 def test_blocks_find_more_than_whole_body_layers_in_many_dimensions() -> None:
-    """Predicted: selection along 24 directions at once is blind, along 4 it is not. Measured: mean error .26 against .41
-    noise units over these 20 runs, standard errors .01 (9 standard errors of the difference). Asked for: 4 of them."""
+    """Predicted: selection along 24 directions at once is blind, along 4 it is not.
+
+    Measured: mean error .26 against .41 noise units over these 20 runs, standard errors .01 (9 standard errors of the difference). Asked for: 4 of them.
+    """
     blocks = tuple(tuple(range(start, start + 4)) for start in range(0, 24, 4)) + (tuple(range(24)),) * 2
     base = annealed.Config(particles=150, layers=8, survival=0.1, shrink=0.71, estimate="mean", resampling="systematic")
     errors = np.empty((2, 20))

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from filters.oracles import GaussianLikelihood
 
+from filters.oracles import GaussianLikelihood
 from muybridge.filters import ConstantVelocity, GaussianWalk, Weights, condensation
 
 START = np.zeros(2)

@@ -6,9 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+
 from filters import conformance
 from filters.conformance import CHECKS
-
 from muybridge.errors import InputError
 from muybridge.filters import METHODS, CommonConfig, Method, condensation, method
 

@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from filters.oracles import GaussianLikelihood
 
+from filters.oracles import GaussianLikelihood
 from muybridge.errors import InputError
 from muybridge.filters import GaussianWalk, condensation, demc
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from filters.oracles import agrees
 from hypothesis import given
 from hypothesis import strategies as st
 
+from filters.oracles import agrees
 from muybridge.errors import InputError
 from muybridge.filters.dynamics import ConstantVelocity, GaussianWalk, reflect
 

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 import pytest
-from filters.oracles import agrees
 from hypothesis import given
 from hypothesis import strategies as st
 
+from filters.oracles import agrees
 from muybridge.filters import moves
 from muybridge.filters.moves import Target, differential_move, exchange_move
 from muybridge.filters.state import CountingLikelihood, Population

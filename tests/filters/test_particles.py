@@ -18,7 +18,7 @@ class TestWeights:
     def test_sum_to_one_and_ignore_a_common_constant(self, log_weights: list[float], constant: float) -> None:
         weights = Weights(log_weights)
         assert weights.values.sum() == pytest.approx(1.0, abs=1e-12)
-        # adding c in float64 rounds each log weight by up to eps * 2e4 = 4.4e-12, hence each weight relatively by twice that
+        # adding c in float64 rounds a log weight by up to eps * 2e4 = 4.4e-12, hence a weight relatively by twice that
         np.testing.assert_allclose(weights.values, Weights(np.array(log_weights) + constant).values, atol=1e-11)
         assert 1.0 - 1e-9 <= weights.ess <= len(log_weights) * (1 + 1e-9)
 

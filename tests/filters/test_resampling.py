@@ -1,13 +1,13 @@
-"""Every scheme is unbiased, within the Monte-Carlo error of its own counts; one that is not is caught by the same test."""
+"""Every scheme is unbiased, within the Monte-Carlo error of its counts; one that is not is caught by the same test."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
-from filters.oracles import agrees
 from hypothesis import given
 from hypothesis import strategies as st
 
+from filters.oracles import agrees
 from muybridge.errors import InputError
 from muybridge.filters.particles import Weights
 from muybridge.filters.resampling import RESAMPLING, _look_up, resample
@@ -47,7 +47,7 @@ def test_copies_differ_from_expectation_by_less_than(name: str) -> None:
 
 
 def test_added_variance_is_smaller_than_multinomial() -> None:
-    """Stratified and residual never add more variance than multinomial (Douc et al., 2005); their sum is far below here.
+    """Stratified and residual never add more variance than multinomial (Douc et al., 2005), nor does the comb here.
 
     Ratio bound: the relative error of a variance from 4000 draws is sqrt(2 / 4000) = 2.2 %; six components and two
     schemes give less than 5 of it, 11 %.

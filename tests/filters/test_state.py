@@ -1,4 +1,4 @@
-"""State, settings and the end of a step; a saved state continues to the byte (the registry-wide test is conformance)."""
+"""State, settings and the counting likelihood. That a saved state continues to the byte is conformance's business."""
 
 from __future__ import annotations
 
