@@ -13,6 +13,7 @@ from muybridge.evaluation import JOINTS
 from muybridge.io.run_folder import JointSeries, write_joints, write_summary
 from muybridge.report import gather, write_report
 from muybridge.report.content import read_diagnostics, worth_seeing
+from muybridge.report.plots import write_plots
 
 SUMMARY = {
     "status": "done",
@@ -142,11 +143,23 @@ class TestOverlays:
         rows = (truth / "joints.csv").read_text().splitlines()
         moved = [re.sub(r",[^,]*,([^,]*)$", r",9.0,\1", row) if row.startswith("11,") else row for row in rows]
         (truth / "joints.csv").write_text("\n".join(moved) + "\n")
-        shown = worth_seeing(30, gather(run, truth).errors)
+        shown = worth_seeing(np.arange(30), gather(run, truth).errors)
         assert 11 in shown
         assert shown[0] == 0
         assert shown[-1] == 29
-        assert 11 not in worth_seeing(30)
+        assert 11 not in worth_seeing(np.arange(30))
+
+
+class TestPlots:
+    def test_one_file_for_each_figure_there_is(self, tmp_path):
+        run = make_run(tmp_path / "run")
+        written = write_plots(run, gather(run, make_run(tmp_path / "truth")))
+        assert [path.stem for path in written] == ["angles", "errors", "health", "path"]
+        assert all(path.read_bytes().startswith(b"\x89PNG") for path in written)
+
+    def test_nothing_to_draw(self, tmp_path):
+        run = make_run(tmp_path / "run", names=("nose",))
+        assert [path.stem for path in write_plots(run, gather(run))] == ["health"]
 
 
 class TestErrors:

@@ -107,7 +107,7 @@ def draw_label(image: np.ndarray, text: str) -> np.ndarray:
     import cv2
 
     _check_picture(image)
-    result, scale = image.copy(), max(0.4, image.shape[0] / 1100)
+    result, scale = image.copy(), max(0.5, image.shape[0] / 1100)
     width = max(1, round(1.6 * scale))
     (text_width, height), below = cv2.getTextSize(text, cv2.FONT_HERSHEY_SIMPLEX, scale, width)
     strip = result[: height + below + 10, : text_width + 16]

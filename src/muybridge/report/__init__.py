@@ -7,6 +7,7 @@
 | `figures` | the drawings, light and dark |
 | `sections` | the parts of the page |
 | `page` | HTML templates and the style sheet |
+| `plots` | the drawings as PNG files |
 | `write` | `write_report`, `render` |
 """
 

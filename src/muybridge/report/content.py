@@ -86,7 +86,7 @@ def gather(
     errors = evaluate(folder, truth, alignment, axes=axes) if truth is not None else None
     trouble = find_trouble(series, diagnostics.get("ess"), particle_count(summary), errors)
     true_series = read_truth(truth, axes=axes) if truth is not None else None
-    sheets = contact_sheets(folder, worth_seeing(len(series.frames), errors))
+    sheets = contact_sheets(folder, series.frames, worth_seeing(series.frames, errors))
     return RunContent(folder.resolve().name, series, summary, diagnostics, errors, true_series, sheets, trouble)
 
 
@@ -118,18 +118,28 @@ def read_diagnostics(path: Path, frames: np.ndarray) -> dict[str, np.ndarray]:
     return {name: values for name, values in found.items() if np.isfinite(values).any()}
 
 
-def worth_seeing(count: int, errors: JointErrors | None = None) -> tuple[int, ...]:
-    """Rows for a contact sheet: evenly spread from first to last, the nearest of them moved to the worst frame."""
-    rows = np.unique(np.rint(np.linspace(0, max(count - 1, 0), min(SHEET_PICTURES, max(count, 1)))).astype(int))
-    if errors is not None and len(rows) > 2:
-        worst = int(np.nanargmax(errors.frame_means_mm))
-        if worst < count and worst not in rows:
-            rows[1 + int(np.argmin(np.abs(rows[1:-1] - worst)))] = worst
-    return tuple(int(row) for row in np.unique(rows))
+def worth_seeing(frames: np.ndarray, errors: JointErrors | None = None) -> tuple[int, ...]:
+    """Rows for a contact sheet: evenly spread from first to last, the nearest of them moved to the worst frame.
+
+    Parameters
+    ----------
+    frames : (T,) int64
+        The run's frame numbers.
+    errors : JointErrors, optional
+    """
+    count = len(frames)
+    rows = np.unique(np.rint(np.linspace(0, max(count - 1, 0), min(SHEET_PICTURES, count))).astype(int))
+    worst = np.flatnonzero(frames == errors.worst_frame) if errors is not None else rows[:0]
+    if len(worst) and len(rows) > 2 and worst[0] not in rows:
+        rows[1 + int(np.argmin(np.abs(rows[1:-1] - worst[0])))] = worst[0]
+    return tuple(int(row) for row in rows)
 
 
-def contact_sheets(folder: Path, rows: tuple[int, ...]) -> dict[str, np.ndarray]:
-    """A sheet for each overlay video in the folder; a video that cannot be read is left out."""
+def contact_sheets(folder: Path, frames: np.ndarray, rows: tuple[int, ...]) -> dict[str, np.ndarray]:
+    """A sheet for each overlay video in the folder; a video that cannot be read is left out.
+
+    An overlay has one picture for each row of the run's tables, so row and picture number are the same.
+    """
     from muybridge.io.video_reader import VideoReader
     from muybridge.plotting.overlay import contact_sheet
 
@@ -142,7 +152,9 @@ def contact_sheets(folder: Path, rows: tuple[int, ...]) -> dict[str, np.ndarray]
         except InputError:
             continue
         if pictures:
-            sheets[path.stem.removeprefix("overlay_")] = contact_sheet(pictures, [f"frame {row}" for row in shown])
+            sheets[path.stem.removeprefix("overlay_")] = contact_sheet(
+                pictures, [f"frame {frames[row]}" for row in shown]
+            )
     return sheets
 
 
