@@ -81,7 +81,8 @@ def test_blocks_perturb_only_their_components_and_shrink_by_visit() -> None:
 def test_blocks_find_more_than_whole_body_layers_in_many_dimensions() -> None:
     """Predicted: selection along 24 directions at once is blind, along 4 it is not.
 
-    Measured: mean error .26 against .41 noise units over these 20 runs, standard errors .01 (9 standard errors of the difference). Asked for: 4 of them.
+    Measured: mean error .26 against .41 noise units over these 20 runs, standard errors .01 (9 standard errors of the
+    difference). Asked for: 4 of them.
     """
     blocks = tuple(tuple(range(start, start + 4)) for start in range(0, 24, 4)) + (tuple(range(24)),) * 2
     base = annealed.Config(particles=150, layers=8, survival=0.1, shrink=0.71, estimate="mean", resampling="systematic")
