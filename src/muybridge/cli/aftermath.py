@@ -44,16 +44,16 @@ def write_overlays(job: Job, out: Path, reporting: Reporting) -> list[Path]:
 
 def compare(out: Path, truth: Path | None, reporting: Reporting) -> dict[str, Any]:
     """Write the report and plots; say how far off the run is where there is a truth, and return that for --json."""
-    from muybridge.evaluation import evaluate
-    from muybridge.report import write_report
     from muybridge.report.content import gather
     from muybridge.report.plots import write_plots
+    from muybridge.report.write import REPORT_FILE, render
 
-    write_report(out, truth)
-    write_plots(out, gather(out, truth))
-    if truth is None:
+    content = gather(out, truth)
+    (out / REPORT_FILE).write_text(render(content), encoding="utf-8")
+    write_plots(out, content)
+    errors = content.errors
+    if errors is None:
         return {}
-    errors = evaluate(out, truth)
     (out / "errors.txt").write_text(errors.to_table() + "\n", encoding="utf-8")
     reporting.say(
         f"mean joint error {errors.mean_mm:.1f} mm (alignment {errors.alignment}), per joint in {out}/errors.txt"

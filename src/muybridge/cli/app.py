@@ -29,6 +29,7 @@ def build() -> App:
         name="muybridge",
         help="Bayesian, model-based tracking of people in video: 3D poses with error bars.",
         version=__version__,
+        suppress_keyboard_interrupt=False,
     )
     for name, (target, line) in COMMANDS.items():
         app.command(f"muybridge.cli.{target}", name=name, help=line)

@@ -30,11 +30,13 @@ def report(
     axes
         The world axis of a .trc file's X, Y and Z, such as yzx; found from heads and feet where absent.
     """
-    from muybridge.report import write_report
     from muybridge.report.content import gather
     from muybridge.report.plots import write_plots
+    from muybridge.report.write import REPORT_FILE, render
 
-    page = write_report(run, truth, alignment=alignment, axes=axes)
-    plots = write_plots(run, gather(run, truth, alignment=alignment, axes=axes))
+    content = gather(run, truth, alignment=alignment, axes=axes)
+    page = run / REPORT_FILE
+    page.write_text(render(content), encoding="utf-8")
+    plots = write_plots(run, content)
     reporting.say(f"{page}, and {len(plots)} plots in {plots[0].parent if plots else run}")
     reporting.finish({"report": page, "plots": plots})
