@@ -83,6 +83,12 @@ class TestErrors:
         with pytest.raises(InputError, match="numbers"):
             read_trc(tmp_path / "m.trc")
 
+    def test_no_frame_number(self, tmp_path):
+        write_trc(tmp_path / "m.trc", NAMES, POINTS, 50.0)
+        (tmp_path / "m.trc").write_text((tmp_path / "m.trc").read_text().replace("\n2\t", "\n\t"))
+        with pytest.raises(InputError, match="frame number"):
+            read_trc(tmp_path / "m.trc")
+
     def test_bad_axes(self):
         with pytest.raises(InputError, match="permutation"):
             columns_to_world(POINTS, "xxz")

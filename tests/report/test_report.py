@@ -107,6 +107,13 @@ class TestWriteReport:
     def test_short_runs(self, tmp_path, frames):
         check(write_report(make_run(tmp_path / "run", frames=frames)).read_text())
 
+    def test_long_runs_are_drawn_as_pixels(self, tmp_path, monkeypatch):
+        monkeypatch.setattr("muybridge.report.figures.MOST_VECTOR_FRAMES", 20)
+        text = write_report(make_run(tmp_path / "run")).read_text()
+        check(text)
+        assert "data:image/png" in text
+        assert "data:image/svg" not in text
+
     def test_nothing_unknown_breaks_it(self, tmp_path):
         odd = dict.fromkeys(SUMMARY) | {"status": "lost", "cameras": "unknown"}
         text = write_report(make_run(tmp_path / "run", summary=odd)).read_text()

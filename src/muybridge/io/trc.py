@@ -16,6 +16,7 @@ from pathlib import Path
 import numpy as np
 
 from muybridge.errors import InputError
+from muybridge.io.disk import replace_file
 
 METRES_PER_UNIT = {"m": 1.0, "cm": 0.01, "mm": 0.001}
 AXES_BY_VERTICAL = ("zxy", "yzx", "xyz")
@@ -77,6 +78,8 @@ def read_trc(path: str | Path, axes: str | None = None) -> MarkerTrack:
             f"TRC file {path}", expected="markers and frames", got=f"{len(names)} markers, {len(rows)} frames"
         )
     numbers = np.array([_numbers(row, 2 + 3 * len(names), path) for row in rows])
+    if not np.isfinite(numbers[:, :2]).all():
+        raise InputError(f"TRC file {path}", expected="a frame number and a time in every line", got="a line without")
     columns = scale * numbers[:, 2:].reshape(len(rows), len(names), 3)
     axes = axes or guess_axes(names, columns)
     return MarkerTrack(names, numbers[:, 0].astype(np.int64) - 1, numbers[:, 1], columns_to_world(columns, axes), axes)
@@ -123,7 +126,7 @@ def write_trc(
     for frame, time, row in zip(frames, times, columns.reshape(len(columns), -1), strict=True):
         cells = ("" if np.isnan(value) else f"{value:.7g}" for value in row)
         lines.append("\t".join([str(frame + 1), f"{time:.6f}", *cells]))
-    Path(path).write_text("\n".join(lines) + "\n", encoding="utf-8")
+    replace_file(path, ("\n".join(lines) + "\n").encode())
 
 
 def columns_to_world(columns: np.ndarray, axes: str) -> np.ndarray:

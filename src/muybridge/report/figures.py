@@ -23,6 +23,7 @@ from muybridge.plotting import (
     plot_joint_errors,
     plot_top_view,
     styled,
+    to_png,
     to_svg,
 )
 from muybridge.plotting.style import title
@@ -34,11 +35,16 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 Draw = Callable[[Theme], "Figure"]
+MOST_VECTOR_FRAMES = 2000
+"""Beyond, the curves are more than an SVG of 1 MB, and denser than its lines are wide."""
 
 
-def picture(draw: Draw, text: str) -> str:
-    """One figure as an HTML picture that follows the reader's light or dark setting."""
-    light, dark = (data_uri(to_svg(draw(theme)), "image/svg+xml") for theme in (LIGHT, DARK))
+def picture(draw: Draw, text: str, frames: int = 0) -> str:
+    """One figure as an HTML picture that follows the reader's light or dark setting; long runs as pixels."""
+    if frames > MOST_VECTOR_FRAMES:
+        light, dark = (data_uri(to_png(draw(theme)), "image/png") for theme in (LIGHT, DARK))
+    else:
+        light, dark = (data_uri(to_svg(draw(theme)), "image/svg+xml") for theme in (LIGHT, DARK))
     return (
         f'<picture><source srcset="{dark}" media="(prefers-color-scheme: dark)">'
         f'<img src="{light}" alt="{text}"></picture>'

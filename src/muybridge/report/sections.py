@@ -59,7 +59,8 @@ def error_section(content: RunContent) -> str:
         "Error against the truth",
         paragraph(f"Alignment {errors.alignment}; {errors.overlap.describe()}.", quiet=True),
         figure(
-            figures.picture(draw, "error per joint and over time"), "Bars: mean. Lines: the middle 90 % of the frames."
+            figures.picture(draw, "error per joint and over time", len(content.series.frames)),
+            "Bars: mean. Lines: the middle 90 % of the frames.",
         ),
         paragraph(f"Stated uncertainty: {errors.calibration.describe()}.") if errors.calibration else "",
         folded("All numbers", errors.to_table()),
@@ -73,7 +74,13 @@ def angle_section(content: RunContent) -> str:
         "Zero is upright standing, positive is forward. Bands: two standard deviations that follow from those of the "
         "joints, taken as independent."
     )
-    return section("Joint angles", figure(figures.picture(draw, "joint angles over time"), caption)) if draw else ""
+    return (
+        section(
+            "Joint angles", figure(figures.picture(draw, "joint angles over time", len(content.series.frames)), caption)
+        )
+        if draw
+        else ""
+    )
 
 
 def health_section(content: RunContent) -> str:
@@ -84,14 +91,26 @@ def health_section(content: RunContent) -> str:
         if "ess" in content.diagnostics
         else ""
     )
-    return section("How sure it was", figure(figures.picture(draw, "uncertainty over time"), caption)) if draw else ""
+    return (
+        section(
+            "How sure it was",
+            figure(figures.picture(draw, "uncertainty over time", len(content.series.frames)), caption),
+        )
+        if draw
+        else ""
+    )
 
 
 def path_section(content: RunContent) -> str:
     """The path from above."""
     draw = figures.path_figure(content)
     return (
-        section("Path", figure(figures.picture(draw, "path from above"), "The pelvis in world coordinates."))
+        section(
+            "Path",
+            figure(
+                figures.picture(draw, "path from above", len(content.series.frames)), "The pelvis in world coordinates."
+            ),
+        )
         if draw
         else ""
     )

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from muybridge.evaluation.alignment import Alignment
+from muybridge.io.disk import replace_file
 from muybridge.report import sections
 from muybridge.report.content import RunContent, gather
 from muybridge.report.page import page
@@ -34,7 +35,7 @@ def write_report(
         The written file.
     """
     target = Path(folder) / REPORT_FILE
-    target.write_text(render(gather(folder, truth, alignment=alignment, axes=axes)), encoding="utf-8")
+    replace_file(target, render(gather(folder, truth, alignment=alignment, axes=axes)).encode())
     return target
 
 
