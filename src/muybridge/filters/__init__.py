@@ -7,6 +7,7 @@ condensation  `condensation.py`    the plain particle filter; the one to compare
 annealed      `annealed.py`        layers of sharpening likelihood and shrinking noise
 demc          `demc.py`            differential evolution Markov chains (Du, 2005)
 tempered      `tempered.py`        annealing whose moves are Metropolis-correct
+guided        `guided.py`          climb the contour, then draw from its curvature; the default
 ============  ===================  ==================================================
 
 Shared parts: `particles` (weights and what is read off them), `resampling`, `dynamics`, `schedule` (annealing
@@ -24,7 +25,7 @@ from types import ModuleType
 from typing import Any
 
 from muybridge.errors import InputError
-from muybridge.filters import annealed, condensation, demc, tempered
+from muybridge.filters import annealed, condensation, demc, guided, tempered
 from muybridge.filters.dynamics import ConstantVelocity, Dynamics, GaussianWalk
 from muybridge.filters.particles import Weights, covariance, maximum_estimate, mean_estimate, standard_deviation
 from muybridge.filters.resampling import RESAMPLING, resample
@@ -62,6 +63,7 @@ METHODS: dict[str, Method] = {
         method_from_module("condensation", condensation, "select, predict, measure; the filter to compare with"),
         method_from_module("annealed", annealed, "layers of sharpening likelihood and shrinking noise"),
         method_from_module("demc", demc, "differential evolution Markov chains climb the likelihood together"),
+        method_from_module("guided", guided, "climb to the mode by the contour, draw particles from its curvature"),
         method_from_module("tempered", tempered, "annealing whose moves leave the posterior invariant"),
     )
 }

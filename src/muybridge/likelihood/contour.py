@@ -50,10 +50,16 @@ class ContourRows(NamedTuple):
 
 
 class NormalEquations(NamedTuple):
-    """Gauss-Newton's view of a log density around a point: H (D, D) its negative curvature, g (D,) its gradient."""
+    """Gauss-Newton's view of a log likelihood around a pose.
+
+    curvature : (D, D), its negative second derivative; gradient : (D,); noise : weighted mean square of the residuals
+    relative to the variance assumed for them; points : how many residuals there were.
+    """
 
     curvature: np.ndarray
     gradient: np.ndarray
+    noise: float
+    points: int
 
 
 def moved_by(arrays: BodyArrays, dofs: int) -> np.ndarray:

@@ -18,6 +18,9 @@ from muybridge.errors import InputError
 from muybridge.likelihood.contour import SIDE_POINTS, ContourRows, NormalEquations, contour_rows, robust_weights
 from muybridge.likelihood.pictures import camera_rows, reduce_mask, stack_masks
 
+#: No contour is believed better than this, metres, however well it fits.
+MINIMUM_SD = 0.002
+
 
 @dataclass(frozen=True)
 class ImageLikelihood:
@@ -61,16 +64,23 @@ class ImageLikelihood:
         return weights / weights.mean()
 
     def observe(self, masks: Sequence[np.ndarray]) -> Observation:
-        """The frame's evidence from masks (C times (H, W) bool) at recorded size."""
+        """The frame's evidence from masks, C times (H, W) bool: at recorded size, or already reduced."""
         if len(masks) != len(self.rig):
             raise InputError("masks", expected=f"one for each of the {len(self.rig)} cameras", got=str(len(masks)))
-        for mask, camera in zip(masks, self.rig, strict=True):
-            if mask.shape != camera.size[::-1]:
-                expected, got = "x".join(map(str, camera.size)), "x".join(map(str, mask.shape[::-1]))
-                raise InputError(f"mask of camera {camera.name!r}", expected=f"{expected} pixels as calibrated", got=got)
-        shares = [reduce_mask(mask, factor) for mask, factor in zip(masks, self.reductions, strict=True)]
-        grey, bits = stack_masks(shares)
-        return Observation(self, grey, bits)
+        shares = [self._reduced(c, mask) for c, mask in enumerate(masks)]
+        return Observation(self, *stack_masks(shares))
+
+    def _reduced(self, c: int, mask: np.ndarray) -> np.ndarray:
+        """The share of foreground per block (H', W') float32 of camera c's mask."""
+        camera, factor = self.rig[c], self.reductions[c]
+        width, height = camera.size
+        if mask.shape == (height, width):
+            return reduce_mask(mask, factor)
+        small = height // factor, width // factor
+        if all(0 <= had - need <= 1 for had, need in zip(mask.shape, small, strict=True)):
+            return mask[: small[0], : small[1]].astype(np.float32)
+        got = "x".join(map(str, mask.shape[::-1]))
+        raise InputError(f"mask of camera {camera.name!r}", expected=f"{width}x{height} pixels as calibrated", got=got)
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,6 +119,9 @@ class Observation:
     def normal_equations(self, pose: np.ndarray, spread: float) -> NormalEquations:
         """Curvature and gradient of the contour's log likelihood at a pose (D,), robust beyond `spread` metres."""
         rows = self.contour(pose, spread)
-        weights = robust_weights(rows.distance, spread) * self.model.camera_weights[rows.camera] / self.model.row_sd**2
-        weighted = rows.slopes * weights[:, None]
-        return NormalEquations(weighted.T @ rows.slopes, weighted.T @ rows.distance)
+        weights = robust_weights(rows.distance, spread) * self.model.camera_weights[rows.camera]
+        total = float(weights.sum())
+        variance = float(weights @ rows.distance**2) / total if total > 0 else self.model.row_sd**2
+        noise = max(variance, MINIMUM_SD**2) / self.model.row_sd**2
+        weighted = rows.slopes * (weights / self.model.row_sd**2)[:, None]
+        return NormalEquations(weighted.T @ rows.slopes, weighted.T @ rows.distance, noise, len(rows.distance))

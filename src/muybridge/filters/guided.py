@@ -1,0 +1,165 @@
+"""The guided filter: climb to the mode of the posterior first, then spend the particles on its shape.
+
+A particle filter in 30 dimensions spends its particles on finding the peak. Where the likelihood can say which way is up (a
+contour can: every outline point knows how far the mask's border lies, and in which direction), a few Gauss-Newton steps
+find the mode from the prediction, and their curvature is the shape of the posterior around it. Particles drawn from that
+Gaussian (a Laplace proposal) are then weighted by the likelihood, and estimate and spread are read off them.
+
+After: the iterated extended Kalman filter for the climb, and the unscented and Laplace-proposal particle filters (van der
+Merwe et al. 2000; Doucet, Godsill and Andrieu 2000, section II-D) for the draw. Robust spreads: Geman and McClure (1987).
+
+====================  ==========================================
+symbol                name
+====================  ==========================================
+x^-                   prediction, the dynamics' mean
+Q                     dynamics.noise_sd squared, diagonal
+H_L, g                likelihood.normal_equations: curvature, gradient
+s_i                   Config.spreads, metres
+kappa                 Config.dependence
+====================  ==========================================
+
+Each step of the climb solves (H_L + Q^-1) d = g + Q^-1 (x^- - x) and goes from x to x + d. The posterior's covariance is
+(H_L / (kappa v) + Q^-1)^-1: v is the residuals' variance relative to the one assumed, found in each frame, and kappa the
+number of neighbouring residuals that err together.
+
+Cost: `len(spreads)` looks at the contour and N likelihood evaluations a frame; N = 0 reports the mode and its curvature.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Literal, Protocol
+
+import numpy as np
+
+from muybridge.filters.dynamics import Dynamics, reflect
+from muybridge.filters.particles import FloatArray, Weights
+from muybridge.filters.state import (
+    CommonConfig,
+    CountingLikelihood,
+    Info,
+    Layers,
+    Likelihood,
+    Population,
+    State,
+    conclude,
+    initial_state,
+    require,
+)
+
+LARGEST_TURN = 0.3  # radians; a step that would turn any joint further is shortened
+
+
+class Linearised(Protocol):
+    """Gauss-Newton's view of a log likelihood around a pose.
+
+    curvature : (D, D), minus its second derivative; gradient : (D,); noise : variance of the residuals relative to the
+    assumed one, 1 where it cannot be told.
+    """
+
+    @property
+    def curvature(self) -> FloatArray: ...
+    @property
+    def gradient(self) -> FloatArray: ...
+    @property
+    def noise(self) -> float: ...
+
+
+class GuidingLikelihood(Likelihood, Protocol):
+    """A likelihood that also knows which way is up."""
+
+    def normal_equations(self, pose: FloatArray, spread: float) -> Linearised:
+        """At a pose (D,), with residuals beyond `spread` (metres) counting less and less."""
+        ...
+
+
+@dataclass(frozen=True, kw_only=True)
+class Config(CommonConfig):
+    """Settings of the guided filter."""
+
+    particles: int = 300  # N; drawn around the mode
+    resampling: str = "systematic"
+    estimate: Literal["mean", "maximum"] = "mean"
+    spreads: tuple[float, ...] = (0.2, 0.13, 0.085, 0.06, 0.045, 0.035, 0.03, 0.025)  # metres, one a step, falling
+    dependence: float = 7.0  # kappa; makes the 95 % regions hold on rendered scenes, see docs/benchmarks.md
+    weighting: Literal["laplace", "likelihood", "importance"] = "laplace"  # equal | p(y|x) | p(y|x) p(x) / proposal
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        falling = all(s > 0 for s in self.spreads) and list(self.spreads) == sorted(self.spreads, reverse=True)
+        require("spreads", len(self.spreads) > 0 and falling, "positive metres, falling", self.spreads)
+        require("dependence", self.dependence > 0, "above 0", self.dependence)
+        require("weighting", self.weighting in ("laplace", "likelihood", "importance"), "laplace | likelihood | importance", self.weighting)
+
+
+PRINTED = Config()  # ours: there is no paper's setting to keep
+WORKING = Config()
+
+
+def init(
+    rng: np.random.Generator,
+    mean: FloatArray,
+    sd: FloatArray,
+    config: Config = WORKING,
+    lower: FloatArray | None = None,
+    upper: FloatArray | None = None,
+) -> State:
+    """Particles around a known pose. mean, sd, lower, upper : (D,) float64, the state's units."""
+    return initial_state(rng, mean, sd, config.particles, lower, upper)
+
+
+def step(
+    rng: np.random.Generator, state: State, likelihood: GuidingLikelihood, dynamics: Dynamics, config: Config = WORKING
+) -> tuple[State, Info]:
+    """One frame: predict, climb, draw, weigh."""
+    counted = CountingLikelihood(likelihood)
+    prediction = dynamics.sample(rng, state.estimate[None], state.velocity, 0.0)[0]
+    mode, seen = climb(prediction, likelihood, dynamics, config)
+    precision = seen.curvature / (config.dependence * seen.noise) + np.diag(dynamics.noise_sd**-2.0)
+    factor = np.linalg.cholesky(precision)
+    standard = rng.standard_normal((config.particles, mode.size))
+    standard[0] = 0.0  # the mode itself is always among them
+    particles = reflect(mode + np.linalg.solve(factor.T, standard.T).T, dynamics.lower, dynamics.upper)
+    log_likelihoods = counted.log_prob(particles)
+    log_weights = _log_weights(particles, log_likelihoods, standard, prediction, dynamics, config)
+    layers = Layers()
+    layers.append(Weights(log_weights).survival_rate, config.sharpness)
+    population = Population(particles, log_likelihoods)
+    following, info = conclude(state, particles, population, log_weights, counted, config, layers)
+    if config.weighting == "laplace" and not info.collapsed:  # equal weights: their mean is the mode plus noise
+        following = replace(following, estimate=mode, velocity=mode - state.estimate)
+    return following, info
+
+
+def climb(
+    prediction: FloatArray, likelihood: GuidingLikelihood, dynamics: Dynamics, config: Config
+) -> tuple[FloatArray, Linearised]:
+    """The posterior's mode near the prediction (D,), and the likelihood's curvature there."""
+    precision, mode = dynamics.noise_sd**-2.0, prediction
+    for spread in config.spreads:
+        seen = likelihood.normal_equations(mode, spread)
+        change = np.linalg.solve(
+            seen.curvature + np.diag(precision), seen.gradient + precision * (prediction - mode)
+        )
+        change *= min(1.0, LARGEST_TURN / max(1e-12, float(np.abs(change).max())))
+        mode = np.clip(mode + change, dynamics.lower, dynamics.upper)
+    return mode, seen
+
+
+def _log_weights(
+    particles: FloatArray,
+    log_likelihoods: FloatArray,
+    standard: FloatArray,
+    prediction: FloatArray,
+    dynamics: Dynamics,
+    config: Config,
+) -> FloatArray:
+    """Unnormalised log weights (N,): of equal draws, by the likelihood, or by posterior over proposal."""
+    possible = np.where(np.isfinite(log_likelihoods), 0.0, -np.inf)
+    if config.weighting == "laplace":
+        return possible
+    if config.weighting == "likelihood":
+        return config.sharpness * log_likelihoods
+    log_prior = -0.5 * np.sum(((particles - prediction) / dynamics.noise_sd) ** 2, axis=1)
+    log_proposal = -0.5 * np.sum(standard**2, axis=1)
+    return config.sharpness * log_likelihoods + log_prior - log_proposal
