@@ -1,7 +1,7 @@
 """Bake the people of the synthetic scenes: one npz a person, so that rendering needs none of this script's packages.
 
-The person is posed by nobody yet: rest vertices, faces, skin weights (the four strongest bones of each vertex), 21 bones and
-one label a vertex (skin, hair, shirt, trousers, shoes, eyes). Clothes are the skin pushed outwards, hair likewise.
+What is kept: rest vertices, faces, skin weights (the four strongest bones of each vertex), 21 bones and one label a
+vertex (skin, hair, shirt, trousers, shoes, eyes). Clothes are the skin pushed outwards, hair likewise.
 Axes: metres, x forward, y to the person's left, z up, the soles on z = 0.
 
 Run in an environment of its own (about 1 GB): pip install torch==2.13.0 anny scipy, then
@@ -20,7 +20,7 @@ import numpy as np
 import torch
 from anny.face_segmentation import get_face_segmentation_mask
 
-#: name -> stature in metres, phenotype, each in [0, 1] (gender 0 = male; age 2/3 = 25 years; missing values 0.5), clothes.
+#: name -> stature in metres; phenotype in [0, 1] (gender 0 = male; age 2/3 = 25 years; missing values 0.5); clothes.
 PEOPLE = {
     "man": (1.79, {"gender": 0.0, "age": 0.70, "muscle": 0.55, "weight": 0.47}, {"sleeve": 0.62}),
     "woman": (1.67, {"gender": 1.0, "age": 0.67, "muscle": 0.50, "weight": 0.46}, {"sleeve": 0.90}),
@@ -66,9 +66,7 @@ def bake(model: anny.Anny, phenotype: dict[str, float], wear: dict[str, float]) 
     """The arrays of one person, see the module's docstring."""
     values = {key: phenotype.get(key, 0.5) for key in model.phenotype_labels}
     out = model(phenotype_kwargs=values, return_bone_ends=True)
-    vertices, heads, tails = (
-        turned(out[f"rest_{key}"][0].numpy()) for key in ("vertices", "bone_heads", "bone_tails")
-    )
+    vertices, heads, tails = (turned(out[f"rest_{key}"][0].numpy()) for key in ("vertices", "bone_heads", "bone_tails"))
     floor = vertices[:, 2].min()
     for points in (vertices, heads, tails):
         points[:, 2] -= floor

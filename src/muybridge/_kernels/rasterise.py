@@ -54,12 +54,14 @@ def fill_triangles(pixels, inverse_depth, faces, depth_buffer, face_buffer, corn
 
 
 @kernel
-def shade_faces(faces, face_buffer, corner_buffer, normals, material, face_label, tiles, tile_size, light, ambient, colours):
+def shade_faces(
+    faces, face_buffer, corner_buffer, normals, material, face_label, tiles, tile_size, light, ambient, colours
+):
     """Colour every covered pixel: solid texture times Lambert's cosine.
 
     normals and material (V, 3) float64: unit normals (world) and places in the texture (metres); face_label (F,) int32;
-    tiles (L, T, T, T, 3) float32 repeats every `tile_size` (L,) metres; light (3,) unit, towards the lamp; ambient: share
-    of the light from everywhere, a little more from above. colours (H, W, 3) float32 is filled where face_buffer >= 0.
+    tiles (L, T, T, T, 3) float32 repeats every `tile_size` (L,) metres; light (3,) unit, towards the lamp; ambient:
+    share of the light from everywhere, a little more from above. colours (H, W, 3) float32 is filled where a face is.
     """
     height, width = face_buffer.shape
     cells = tiles.shape[1]

@@ -1,8 +1,8 @@
 """Motions that need no recording: walk, wave, crouch, each a list of joint angles over time, varied by a seed.
 
 The walk's joint angles are tables of normal gait over one stride (heel strike to heel strike; after D. A. Winter,
-Biomechanics and Motor Control of Human Movement, 4th ed., chapter 4, rounded to whole degrees). The body is then moved so
-that the foot that bears it stays nearly still, and raised so that it touches the floor: steps and speed follow from the legs.
+Biomechanics and Motor Control of Human Movement, 4th ed., chapter 4, smoothed). The body is then moved so that the foot
+that bears it stays nearly still, and raised so that it touches the floor: steps and speed follow from the legs.
 """
 
 from __future__ import annotations
@@ -14,15 +14,16 @@ import numpy as np
 from muybridge.errors import InputError
 from muybridge.synthetic.skinning import Figure
 
-#: Degrees at 0, 10, ..., 90 % of the stride of the same leg: flexion of hip and knee, dorsiflexion of the ankle.
-HIP = (21, 18, 11, 3, -5, -10, -7, 7, 19, 23)
-KNEE = (4, 14, 16, 9, 5, 11, 37, 62, 50, 18)
-ANKLE = (0, -5, 2, 6, 9, 6, -15, -4, 3, 2)
-TOES = (8, 0, 0, 0, 4, 18, 18, 8, 6, 8)
+#: Degrees at equal steps of the stride of the same leg: flexion of hip and knee, dorsiflexion of ankle and toes. They
+#: were fitted, near normal gait, so that a body carried by them goes at an even speed and a steady height.
+HIP = (19, 17, 16.4, 14.8, 11.1, 5.5, -1.2, -7.5, -11.3, -12, -10.7, -7.8, -3.3, 4, 11, 17, 21, 22.5, 22, 20.5)
+KNEE = (5, 13, 17, 9, 4, 18, 38, 61, 50, 19)
+ANKLE = (2, -2, 2, 8, 8, 11, -12, -7, 5, 1)
+TOES = (8, 0, 0, 0, 4, 24, 26, 8, 6, 8)
 #: Share of the stride at which a foot takes and gives up the body's weight (begin, end of each change).
 TAKES, GIVES = (0.0, 0.10), (0.50, 0.62)
-#: Seconds (standard deviation) over which the speed of the body is evened out; the price is a foot that slips by a few cm.
-SURGE = 0.10
+#: Seconds (standard deviation) over which the body's speed is evened out; the price is a foot that slips a little.
+SURGE = 0.06
 KINDS = ("walk", "wave", "crouch")
 
 
@@ -96,9 +97,9 @@ def perform(figure: Figure, motion: Motion) -> Track:
     return Track(motion.times, worlds, places, joints)
 
 
-# ---- angles: dict of bone name -> (T, 3) degrees: flexion forward, abduction outward, turn to the left; and bearing
-# ---- (T, 2), the share of the weight on each foot -----------------------------------------------------------------------
+# ---- what is done: angles, and the share (T, 2) of the weight on the left and right foot --------------------------
 
+#: bone -> (T, 3) degrees: flexion forward, abduction outward, turn to the left
 Angles = dict[str, np.ndarray]
 
 
@@ -109,7 +110,7 @@ def _walk(rng: np.random.Generator, motion: Motion) -> tuple[Angles, np.ndarray]
     for side, shift in (("left", 0.0), ("right", 0.5)):
         own = phase + shift
         lean = np.sin(2 * np.pi * own)
-        _add(angles, f"{side}_thigh", motion.vigour * _periodic(HIP, own), -3.0 - 5.0 * lean)
+        _add(angles, f"{side}_thigh", motion.vigour * _periodic(HIP, own), -1.5 - 5.0 * lean)
         _add(angles, f"{side}_shank", -motion.vigour * _periodic(KNEE, own))
         _add(angles, f"{side}_foot", _periodic(ANKLE, own))
         _add(angles, f"{side}_toes", _periodic(TOES, own))
@@ -180,7 +181,7 @@ def _add(
     angles[bone] = angles[bone] + added if bone in angles else added
 
 
-def _periodic(table: tuple[int, ...], phase: np.ndarray) -> np.ndarray:
+def _periodic(table: tuple[float, ...], phase: np.ndarray) -> np.ndarray:
     """Smooth periodic curve through equally spaced values: its Fourier series."""
     spectrum = np.fft.rfft(table) / len(table)
     spectrum[1:] *= 2.0
@@ -203,11 +204,11 @@ def _smooth_step(x: np.ndarray) -> np.ndarray:
     return x * x * (3.0 - 2.0 * x)
 
 
-# ---- from angles to a body on the floor --------------------------------------------------------------------------------
+# ---- from angles to a body on the floor ------------------------------------------------------------------------------
 
 
 def _rotations(figure: Figure, angles: Angles, heading: np.ndarray) -> np.ndarray:
-    """(T, B, 3, 3): turn, then abduction, then flexion of each bone relative to its parent; the root also has the heading."""
+    """(T, B, 3, 3): turn, then abduction, then flexion of each bone in its parent; the root also has the heading."""
     local = np.tile(np.eye(3), (len(heading), len(figure.bone_names), 1, 1))
     for name, degrees in angles.items():
         flexion, abduction, turn = np.radians(np.broadcast_to(degrees, (len(heading), 3))).T
@@ -229,7 +230,7 @@ def _about(axis: int, angle: np.ndarray) -> np.ndarray:
 
 
 def _planted(figure: Figure, worlds: np.ndarray, places: np.ndarray, bearing: np.ndarray, motion: Motion) -> np.ndarray:
-    """(T, 3) metres: shift of the whole body so that soles touch the floor, and the foot that bears it stays where it is."""
+    """(T, 3) metres: shift of the body so that soles touch the floor, and the foot that bears it stays where it is."""
     soles = np.stack([_sole(figure, worlds, places, side) for side in ("left", "right")], axis=1)  # (T, 2, points, 3)
     lowest = soles[..., 2].min(axis=2)
     shift = np.zeros((len(worlds), 3))
@@ -239,7 +240,7 @@ def _planted(figure: Figure, worlds: np.ndarray, places: np.ndarray, bearing: np
     weight = share[1:] + share[:-1]
     steps = np.diff(soles[..., :2], axis=0)
     slide = (weight[..., None] * steps).sum(axis=(1, 2)) / weight.sum(axis=(1, 2))[:, None]
-    # The tables alone would make the body surge by half its speed twice a stride; people do not, their soles give.
+    # The legs alone would make the body surge twice a stride more than people do.
     speed = np.stack([_smoothed(column, width=SURGE * motion.rate) for column in slide.T], axis=1)
     shift[1:, :2] = -np.cumsum(speed, axis=0)
     shift[:, :2] += np.asarray(motion.place) - (places[:, 0] + shift)[len(shift) // 2, :2]

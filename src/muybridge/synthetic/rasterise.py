@@ -81,7 +81,17 @@ def draw(
     colours = np.zeros((height * samples, width * samples, 3), dtype=np.float32)
     light = np.asarray(light, dtype=np.float64) / np.linalg.norm(light)
     shade_faces(
-        faces, buffers[1], buffers[2], normals, material, face_labels, cloth.tiles, cloth.tile_size, light, ambient, colours
+        faces,
+        buffers[1],
+        buffers[2],
+        normals,
+        material,
+        face_labels,
+        cloth.tiles,
+        cloth.tile_size,
+        light,
+        ambient,
+        colours,
     )
     nearest = _blocks(buffers[0], samples).max(axis=(1, 3))
     with np.errstate(divide="ignore"):
@@ -95,7 +105,7 @@ def draw(
 
 
 def coverage_of(points: np.ndarray, faces: np.ndarray, width: int, height: int) -> np.ndarray:
-    """(height, width) bool: cells of a grid that a flat mesh covers; points (V, 2) float64 in cells (shadows on a floor)."""
+    """(height, width) bool: cells of a grid that a flat mesh covers, such as a shadow; points (V, 2) float64, cells."""
     buffers = empty_buffers(width, height)
     fill_triangles(points, np.ones(len(points)), faces, *buffers)
     return buffers[1] >= 0

@@ -57,7 +57,7 @@ def _pixel_grid(width: int, height: int) -> np.ndarray:
 
 
 def _hits(room: Room, origin: np.ndarray, rays: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Where rays from inside leave the box, (N, 3), and through which side: 0-3 walls -x +x -y +y, 4 floor, 5 ceiling."""
+    """Where rays leave the box, (N, 3), and through which side: 0-3 walls -x +x -y +y, 4 floor, 5 ceiling."""
     low = np.array([-room.half_width, -room.half_width, 0.0])
     high = np.array([room.half_width, room.half_width, room.height])
     with np.errstate(divide="ignore", invalid="ignore"):

@@ -1,8 +1,8 @@
 """A scene whose truth is known: a person who moves in a room, seen by cameras.
 
-`demo_scene(seed)` is the scene of `muybridge demo`. Every picture depends on the scene and the frame alone, so frames may
-be rendered in any order. The person is a skinned mesh, so no cone model fits exactly, and lens, noise, shadow and a light
-that drifts are those of an ordinary camera.
+`demo_scene(seed)` is the scene of `muybridge demo`. Every picture depends on the scene and the frame alone, so frames
+may be rendered in any order. The person is a skinned mesh, so no cone model fits exactly, and lens, noise, shadow and a
+light that drifts are those of an ordinary room and camera.
 """
 
 from __future__ import annotations
@@ -203,7 +203,11 @@ def stage(scene: Scene) -> Stage:
     cloth = clothing(rng, garments, figure.label_names)
     rooms = [picture(scene.room, camera) for camera in scene.rig]
     return Stage(
-        figure, cloth, perform(figure, scene.motion), tuple(plate for plate, _ in rooms), tuple(floor for _, floor in rooms)
+        figure,
+        cloth,
+        perform(figure, scene.motion),
+        tuple(plate for plate, _ in rooms),
+        tuple(floor for _, floor in rooms),
     )
 
 

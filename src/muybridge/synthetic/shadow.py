@@ -67,6 +67,6 @@ def floor_shade(vertices: np.ndarray, faces: np.ndarray, light: np.ndarray, stre
     dark = coverage_of((cast - low) / CELL, faces, columns, rows).astype(np.float32)
     touching = faces[(vertices[faces, 2] < CONTACT_HEIGHT).all(axis=1)]
     under = coverage_of((vertices[:, :2] - low) / CELL, touching, columns, rows).astype(np.float32)
-    dark = cv2.GaussianBlur(dark, (0, 0), PENUMBRA / CELL)
-    under = cv2.GaussianBlur(under, (0, 0), CONTACT / CELL)
-    return FloorShade(low, (1.0 - strength * dark) * (1.0 - CONTACT_SHADE * strength * under))
+    soft = cv2.GaussianBlur(dark, (0, 0), PENUMBRA / CELL)
+    near = cv2.GaussianBlur(under, (0, 0), CONTACT / CELL)
+    return FloorShade(low, (1.0 - strength * soft) * (1.0 - CONTACT_SHADE * strength * near))

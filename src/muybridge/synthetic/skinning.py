@@ -22,7 +22,14 @@ from muybridge.errors import InputError
 from muybridge.evaluation.names import JOINTS
 
 #: The bone at whose head each joint lies; pelvis, thorax and head_top are made from several points (`Figure.joints`).
-JOINT_BONES = {"shoulder": "upper_arm", "elbow": "forearm", "wrist": "hand", "hip": "thigh", "knee": "shank", "ankle": "foot"}
+JOINT_BONES = {
+    "shoulder": "upper_arm",
+    "elbow": "forearm",
+    "wrist": "hand",
+    "hip": "thigh",
+    "knee": "shank",
+    "ankle": "foot",
+}
 FORWARD, DOWN = np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.0, -1.0])
 
 
@@ -185,7 +192,10 @@ def load_figure(name: str) -> Figure:
             bone_names=tuple(str(bone) for bone in file["bone_names"]),
             parents=file["bone_parents"].astype(np.int64),
             heads=file["bone_heads"].astype(np.float64),
-            landmarks={str(key): point.astype(np.float64) for key, point in zip(file["landmark_names"], file["landmarks"], strict=True)},
+            landmarks={
+                str(key): point.astype(np.float64)
+                for key, point in zip(file["landmark_names"], file["landmarks"], strict=True)
+            },
         )
 
 

@@ -37,7 +37,7 @@ def smooth_noise(rng: np.random.Generator, points: np.ndarray, cell: float, octa
 def solid(rng: np.random.Generator, pattern: str, colour: Colour, second: Colour) -> np.ndarray:
     """(CELLS, CELLS, CELLS, 3) float32 BGR: one tile of a cloth; its last axis in space is up.
 
-    `stripes` run round the body, `checks` cross them, `blotches` are smooth blots of the second colour, `denim` is grain.
+    `stripes` run round the body, `checks` cross them, `blotches` are blots of the second colour, `denim` is grain.
     """
     if pattern not in PATTERNS:
         raise InputError("cloth: pattern", expected=f"one of {', '.join(PATTERNS)}", got=repr(pattern))
@@ -56,7 +56,9 @@ def solid(rng: np.random.Generator, pattern: str, colour: Colour, second: Colour
     return np.clip(tile, 0, 255).astype(np.float32)
 
 
-def clothing(rng: np.random.Generator, outfit: dict[str, tuple[str, Colour, Colour, float]], labels: tuple[str, ...]) -> Cloth:
+def clothing(
+    rng: np.random.Generator, outfit: dict[str, tuple[str, Colour, Colour, float]], labels: tuple[str, ...]
+) -> Cloth:
     """Solid textures of every label: outfit[label] = (pattern, colour, second colour, tile size in metres)."""
     missing = [label for label in labels if label not in outfit]
     if missing:

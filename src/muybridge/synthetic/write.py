@@ -26,7 +26,8 @@ from muybridge.synthetic.scene import Scene, empty, figure_of, render, truth
 
 QUALITY = 18  # x264's constant rate factor: fine
 EMPTY_SECONDS = 1.0
-TRUTH_FILE, CALIBRATION_FILE, MEASURES_FILE, JOB_FILE = "truth_joints.csv", "calibration.json", "measures.toml", "job.toml"
+TRUTH_FILE, CALIBRATION_FILE = "truth_joints.csv", "calibration.json"
+MEASURES_FILE, JOB_FILE = "measures.toml", "job.toml"
 
 #: segment -> the joints at its ends
 SEGMENTS: dict[str, tuple[str, str]] = {

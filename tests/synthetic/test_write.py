@@ -1,0 +1,85 @@
+"""What is written can be read by everything that reads such things."""
+
+from __future__ import annotations
+
+import tomllib
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from muybridge.cameras.json_format import read_json
+from muybridge.cameras.model import Rig
+from muybridge.evaluation.names import JOINTS
+from muybridge.evaluation.truth import read_truth
+from muybridge.io import job as jobs
+from muybridge.io.video import open_masks, open_pictures
+from muybridge.synthetic.motion import Motion
+from muybridge.synthetic.scene import demo_scene, render, truth
+from muybridge.synthetic.write import measures, stature, write_scene
+
+
+@pytest.fixture(scope="module")
+def written(tmp_path_factory):
+    """A scene of four frames in two small cameras, and its folder."""
+    scene = demo_scene(1)
+    scene = replace(
+        scene, rig=Rig(tuple(c.scaled(0.25) for c in scene.rig.cameras[:2])), motion=Motion(duration=4 / 30)
+    )
+    folder = tmp_path_factory.mktemp("scene")
+    seen: list[tuple[int, int]] = []
+    job = write_scene(scene, folder, progress=lambda done, of: seen.append((done, of)))
+    assert seen == [(1, 4), (2, 4), (3, 4), (4, 4)]
+    return scene, folder, job
+
+
+def test_truth(written):
+    scene, folder, _ = written
+    track = read_truth(folder)
+    assert tuple(track.names) == JOINTS
+    np.testing.assert_allclose(track.positions, truth(scene).joints, atol=1e-6)
+    np.testing.assert_allclose(track.times, np.arange(4) / 30, atol=1e-6)
+
+
+def test_truth_columns(written):
+    lines = (written[1] / "truth_joints.csv").read_text().splitlines()
+    assert lines[0] == "frame,time_s,joint,x_m,y_m,z_m,sd_m"
+    assert (
+        len(lines) == 1 + 4 * 15 and lines[1].startswith("0,0.000000,pelvis,") and float(lines[1].split(",")[-1]) == 0
+    )
+
+
+def test_cameras(written):
+    scene, folder, _ = written
+    assert tuple(read_json([folder / "calibration.json"])) == scene.rig.cameras
+
+
+def test_videos(written):
+    """H.264 at this quality is within a few grey values on average; the mask comes back but for its border."""
+    scene, folder, _ = written
+    for index, name in enumerate(scene.rig.names):
+        pictures = [picture for _, _, picture in open_pictures(folder / f"{name}.mp4").frames()]
+        masks = [mask for _, _, mask in open_masks(folder / f"{name}_mask.mp4").frames()]
+        assert len(pictures) == len(masks) == 4
+        images, truths = render(scene, 2)
+        assert np.abs(pictures[2].astype(float) - images[index]).mean() < 5
+        assert (masks[2] == truths[index]).mean() > 0.99
+        assert open_pictures(folder / f"{name}_empty.mp4").frame_count == 30
+
+
+def test_job(written):
+    _, folder, path = written
+    job = jobs.read(path)
+    assert path == folder / "job.toml"
+    assert [camera.pictures for camera in job.cameras] == [folder / "cam1.mp4", folder / "cam2.mp4"]
+    assert job.body.height_m == pytest.approx(1.81, abs=0.01)
+    for camera in job.cameras:
+        jobs.background_config(camera)
+
+
+def test_measures(written):
+    scene, folder, _ = written
+    lengths = tomllib.loads((folder / "measures.toml").read_text())
+    assert lengths == pytest.approx(measures(scene), abs=1e-4)
+    assert lengths["left_thigh"] == lengths["right_thigh"] and 0.2 < lengths["left_forearm"] < 0.3
+    assert 1.79 < stature(scene) < 1.82
