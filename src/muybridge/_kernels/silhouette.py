@@ -31,6 +31,16 @@ def count_and_clear(column, mask):
 
 
 @kernel
+def count_inside(column, mask):
+    """As `count_and_clear`, but the column stays."""
+    model = inside = 0
+    for i in range(column.shape[0]):
+        model += popcount(column[i])
+        inside += popcount(column[i] & mask[i])
+    return model, inside
+
+
+@kernel
 def _one_particle(pose, parent, fixed, axis, dof, shaped, ends, half_axes, cameras, masks, frames, outlines, canvas, first, last,
                   out):
     """Counts (C, 2) of one pose: pixels of the model, and of these the ones inside the mask."""
