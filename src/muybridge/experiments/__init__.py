@@ -1,0 +1,8 @@
+"""What can be measured on any machine with nothing but the package.
+
+| module | what |
+|---|---|
+| `machine` | the hardware, versions and commit that a number belongs to |
+| `speed` | `BENCHMARKS`: likelihoods, filters, rendering; each a row of the table that `muybridge bench` prints |
+| `peer` | the same silhouette likelihood as one would write it with OpenCV and NumPy, a pose at a time |
+"""
