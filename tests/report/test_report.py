@@ -12,7 +12,7 @@ from muybridge.errors import InputError
 from muybridge.evaluation import JOINTS
 from muybridge.io.run_folder import JointSeries, write_joints, write_summary
 from muybridge.report import gather, write_report
-from muybridge.report.content import read_diagnostics, worth_seeing
+from muybridge.report.content import read_diagnostics
 from muybridge.report.plots import write_plots
 
 SUMMARY = {
@@ -144,17 +144,6 @@ class TestOverlays:
         text = write_report(run).read_text()
         check(text)
         assert "data:image/jpeg" in text
-
-    def test_the_worst_frame_is_among_those_shown(self, tmp_path):
-        run, truth = make_run(tmp_path / "run"), make_run(tmp_path / "truth")
-        rows = (truth / "joints.csv").read_text().splitlines()
-        moved = [re.sub(r",[^,]*,([^,]*)$", r",9.0,\1", row) if row.startswith("11,") else row for row in rows]
-        (truth / "joints.csv").write_text("\n".join(moved) + "\n")
-        shown = worth_seeing(np.arange(30), gather(run, truth).errors)
-        assert 11 in shown
-        assert shown[0] == 0
-        assert shown[-1] == 29
-        assert 11 not in worth_seeing(np.arange(30))
 
 
 class TestPlots:

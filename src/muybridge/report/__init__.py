@@ -3,6 +3,7 @@
 | module | what |
 |---|---|
 | `content` | what is read from a run folder |
+| `sheets` | contact sheets from overlay videos, cut to the person |
 | `trouble` | which frames deserve a look |
 | `figures` | the drawings, light and dark |
 | `sections` | the parts of the page |

@@ -3,7 +3,7 @@
 Beside joints.csv and run.json these are used where they are there:
 
 - `diagnostics.csv`: frame, then any of time_s, ess, acceptance, log_likelihood, ms (one row a frame);
-- `overlay_<camera>.mp4`: pictures for the contact sheets;
+- `overlay_<camera>.mp4`: pictures for the contact sheets, and `cameras.json`: where in them the person is;
 - in run.json: `settings.filter.particles` or `particles`, and `cameras`: {name: {shift_px: [x, y], residual_px: r}}.
 """
 
@@ -21,10 +21,10 @@ from muybridge.errors import InputError
 from muybridge.evaluation import JointErrors, evaluate
 from muybridge.evaluation.alignment import Alignment
 from muybridge.io.run_folder import JointSeries, read_joints, read_summary
+from muybridge.report.sheets import contact_sheets, worth_seeing
 from muybridge.report.trouble import Trouble, find_trouble
 
 DIAGNOSTICS_FILE = "diagnostics.csv"
-SHEET_PICTURES = 8
 
 
 @dataclass(frozen=True)
@@ -86,7 +86,7 @@ def gather(
     errors = evaluate(folder, truth, alignment, axes=axes) if truth is not None else None
     trouble = find_trouble(series, diagnostics.get("ess"), particle_count(summary), errors)
     true_series = read_truth(truth, axes=axes) if truth is not None else None
-    sheets = contact_sheets(folder, series.frames, worth_seeing(series.frames, errors))
+    sheets = contact_sheets(folder, series, worth_seeing(series.frames, errors))
     return RunContent(folder.resolve().name, series, summary, diagnostics, errors, true_series, sheets, trouble)
 
 
@@ -116,46 +116,6 @@ def read_diagnostics(path: Path, frames: np.ndarray) -> dict[str, np.ndarray]:
             for name in columns:
                 found[name][place] = _number(row[name])
     return {name: values for name, values in found.items() if np.isfinite(values).any()}
-
-
-def worth_seeing(frames: np.ndarray, errors: JointErrors | None = None) -> tuple[int, ...]:
-    """Rows for a contact sheet: evenly spread from first to last, the nearest of them moved to the worst frame.
-
-    Parameters
-    ----------
-    frames : (T,) int64
-        The run's frame numbers.
-    errors : JointErrors, optional
-    """
-    count = len(frames)
-    rows = np.unique(np.rint(np.linspace(0, max(count - 1, 0), min(SHEET_PICTURES, count))).astype(int))
-    worst = np.flatnonzero(frames == errors.worst_frame) if errors is not None else rows[:0]
-    if len(worst) and len(rows) > 2 and worst[0] not in rows:
-        rows[1 + int(np.argmin(np.abs(rows[1:-1] - worst[0])))] = worst[0]
-    return tuple(int(row) for row in rows)
-
-
-def contact_sheets(folder: Path, frames: np.ndarray, rows: tuple[int, ...]) -> dict[str, np.ndarray]:
-    """A sheet for each overlay video in the folder; a video that cannot be read is left out.
-
-    An overlay has one picture for each row of the run's tables, so row and picture number are the same.
-    """
-    from muybridge.io.video_reader import VideoReader
-    from muybridge.plotting.overlay import contact_sheet
-
-    sheets = {}
-    for path in sorted(folder.glob("overlay_*.mp4")):
-        try:
-            with VideoReader(path) as video:
-                shown = [row for row in rows if row < video.frame_count]
-                pictures = [video.read(row) for row in shown]
-        except InputError:
-            continue
-        if pictures:
-            sheets[path.stem.removeprefix("overlay_")] = contact_sheet(
-                pictures, [f"frame {frames[row]}" for row in shown]
-            )
-    return sheets
 
 
 def _number(cell: str | None) -> float:
