@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from filters.oracles import GaussianLikelihood
+from filters.oracles import GaussianLikelihood, NormalEquations
 from muybridge.errors import InputError
 from muybridge.filters import ConstantVelocity, GaussianWalk, Method, state_from_arrays, state_to_arrays
 
@@ -30,6 +30,9 @@ class Scripted:
         answer = GaussianLikelihood(np.zeros(poses.shape[1]), 0.3).log_prob(poses)
         self.answered.append(answer if self.damage is None else self.damage(poses, answer))
         return self.answered[-1]
+
+    def normal_equations(self, pose: np.ndarray, spread: float) -> NormalEquations:
+        return GaussianLikelihood(np.zeros(pose.size), 0.3).normal_equations(pose, spread)
 
 
 def all_of(value: float) -> Callable[[np.ndarray, np.ndarray], np.ndarray]:
@@ -167,7 +170,7 @@ def check_damaged_answers_are_survived(method: Method) -> None:
 
 
 def check_bad_likelihood_is_named(method: Method) -> None:
-    class Column:
+    class Column(Scripted):
         def log_prob(self, poses: np.ndarray) -> np.ndarray:
             return np.zeros((len(poses), 1))
 

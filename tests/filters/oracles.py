@@ -20,6 +20,19 @@ class GaussianLikelihood:
     def log_prob(self, poses: np.ndarray) -> np.ndarray:
         return -0.5 * (((poses - self.observation) / self.sd) ** 2).sum(axis=1)
 
+    def normal_equations(self, pose: np.ndarray, spread: float) -> NormalEquations:
+        """The same, as a filter that climbs wants to know it; exact, so that `spread` is not needed."""
+        return NormalEquations(np.eye(pose.size) / self.sd**2, (self.observation - pose) / self.sd**2)
+
+
+@dataclass(frozen=True)
+class NormalEquations:
+    """Minus the second derivative (D, D) and the first (D,) of a log likelihood; residuals as noisy as assumed."""
+
+    curvature: np.ndarray
+    gradient: np.ndarray
+    noise: float = 1.0
+
 
 @dataclass(frozen=True)
 class Kalman:

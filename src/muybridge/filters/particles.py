@@ -2,6 +2,9 @@
 
 Everything here takes `particles (N, D)` and `weights`, knows nothing of where they come from, and changes
 neither.
+
+Sums over particles are written with einsum and sum, not with @ and dot: BLAS adds in another order when it has
+another number of threads, and results may not depend on that.
 """
 
 from __future__ import annotations
@@ -75,7 +78,7 @@ class Weights:
     @property
     def ess(self) -> float:
         """Effective sample size 1 / sum w^2, between 1 and N; 0 when collapsed."""
-        return 0.0 if self.collapsed else float(1.0 / np.dot(self.values, self.values))
+        return 0.0 if self.collapsed else float(1.0 / np.sum(self.values**2))
 
     @property
     def survival_rate(self) -> float:
@@ -85,7 +88,7 @@ class Weights:
 
 def mean_estimate(particles: FloatArray, weights: Weights) -> FloatArray:
     """Expectation of the state, (3.25). particles : (N, D); returns (D,), both float64."""
-    mean: FloatArray = weights.values @ particles
+    mean: FloatArray = np.einsum("n,nd->d", weights.values, particles)
     return mean
 
 
@@ -102,14 +105,14 @@ def covariance(particles: FloatArray, weights: Weights) -> FloatArray:
     estimate from independent draws.
     """
     deviations = particles - mean_estimate(particles, weights)
-    moment: FloatArray = (weights.values[:, None] * deviations).T @ deviations
+    moment: FloatArray = np.einsum("ni,nj->ij", weights.values[:, None] * deviations, deviations)
     return moment
 
 
 def standard_deviation(particles: FloatArray, weights: Weights) -> FloatArray:
     """Square root of the covariance's diagonal. particles : (N, D); returns (D,), both float64, state units."""
     deviations = particles - mean_estimate(particles, weights)
-    variance: FloatArray = weights.values @ deviations**2
+    variance: FloatArray = np.einsum("n,nd->d", weights.values, deviations**2)
     return np.sqrt(variance)
 
 

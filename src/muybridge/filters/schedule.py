@@ -65,7 +65,7 @@ def _bisect(alive: FloatArray, wanted: float, low: float, high: float) -> float:
 def _survival_rate(alive: FloatArray, exponent: float) -> float:
     """1 / (N sum w^2) of the weights exp(exponent alive), whose largest is 1; without a `Weights`, for speed."""
     weights = np.exp(exponent * alive)
-    return float(weights.sum() ** 2 / (np.dot(weights, weights) * weights.size))
+    return float(weights.sum() ** 2 / (np.sum(weights**2) * weights.size))
 
 
 def powered(log_likelihoods: FloatArray, exponent: float) -> FloatArray:
