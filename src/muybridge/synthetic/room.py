@@ -134,8 +134,13 @@ def _hang(rng: np.random.Generator, colours: np.ndarray, at: np.ndarray, box: tu
     left, low, right, high = box
     inside = (at[:, 0] > left) & (at[:, 0] < right) & (at[:, 1] > low) & (at[:, 1] < high)
     edge = np.minimum.reduce([at[:, 0] - left, right - at[:, 0], at[:, 1] - low, high - at[:, 1]])
-    first, second = rng.uniform(50, 200, 3), rng.uniform(40, 220, 3)
+    first, second = _muted(rng.uniform(50, 200, 3)), _muted(rng.uniform(40, 220, 3))
     blots = smooth_noise(rng, at[inside], 0.5 if tall else 0.18)
     share = 0.06 * blots if tall else np.clip(0.5 + 1.2 * blots, 0, 1)
     colours[inside] = first + (second - first) * share[:, None]
     colours[inside & (edge < 0.035)] = first * 0.5
+
+
+def _muted(colour: np.ndarray) -> np.ndarray:
+    """A colour half way to its own grey: rooms are not painted in pure colours."""
+    return 0.5 * (colour + colour.mean())

@@ -137,11 +137,13 @@ class Figure:
     def joints(self, world: np.ndarray, places: np.ndarray) -> np.ndarray:
         """(15, 3) metres, world, in the order of `JOINTS`.
 
-        The pelvis is midway between the hips, the thorax the base of the neck, head_top the highest point of the head.
+        The pelvis is midway between the hips; the thorax midway between the base of the neck and the inner ends of the
+        clavicles, as marker sets take it from C7 and the sternal notch; head_top the top of the head, with hair.
         """
+        collar = 0.5 * (places[self.bone("left_clavicle")] + places[self.bone("right_clavicle")])
         found = {
             "pelvis": 0.5 * (places[self.bone("left_thigh")] + places[self.bone("right_thigh")]),
-            "thorax": places[self.bone("neck")],
+            "thorax": 0.5 * (places[self.bone("neck")] + collar),
             "head_top": self.carried(self.landmarks["head_top"], self.bone("head"), world, places),
         }
         for name in JOINTS:
