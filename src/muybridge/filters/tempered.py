@@ -127,7 +127,10 @@ def _next_exponent(log_likelihoods: FloatArray, exponent: float, config: Config)
 
 
 def _normal_about(centres: FloatArray, sd: FloatArray) -> LogPrior:
-    """log p(X_k | X_{k-1}) up to a constant, for poses (M, D) that would replace `members` (M,)."""
+    """log p(X_k | X_{k-1}) up to a constant, for poses (M, D) that would replace `members` (M,).
+
+    A component without noise has no density and is left out: give it no spread at the start either, and it stays.
+    """
     free = sd > 0
 
     def log_prior(poses: FloatArray, members: Indices) -> FloatArray:
