@@ -3,8 +3,9 @@
     CAM1/image0000.bmp ..., FG1/image0000.bmp ..., CALIB/Camera1.cal ..., BodyShapeParameters.txt, InitialPose.txt,
     PoseParameters.txt; rendered scenes add plate1.bmp ..., truth_joints.csv and truth_poses.txt.
 
-Numbers are separated by white space, millimetres and radians; they leave this module in metres and radians. The order of
-the measures and of the pose is the file's; `muybridge.body.bodytrack` turns both into a body and its degrees of freedom.
+Numbers are separated by white space, millimetres and radians; they leave this module in metres and radians. The order
+of the measures and of the pose is the file's; `muybridge.body.bodytrack` turns both into a body and its degrees of
+freedom.
 """
 
 from __future__ import annotations
@@ -55,14 +56,16 @@ def read_bodytrack(folder: Path | str) -> BodytrackFolder:
     """Read a folder in the bodytrack layout."""
     folder = Path(folder)
     recording = bodytrack_recording(folder)
-    limits = read_pose_parameters(folder / PARAMETERS_FILE) if (folder / PARAMETERS_FILE).is_file() else (None,) * 3
-    truth = folder / "truth_poses.txt"
+    parameters, truth = folder / PARAMETERS_FILE, folder / "truth_poses.txt"
+    sd, minimum, maximum = read_pose_parameters(parameters) if parameters.is_file() else (None, None, None)
     return BodytrackFolder(
         recording,
         read_measures(folder / SHAPE_FILE),
         read_poses(folder / POSE_FILE)[0],
-        *limits,
-        truth_poses=read_poses(truth) if truth.is_file() else None,
+        sd,
+        minimum,
+        maximum,
+        read_poses(truth) if truth.is_file() else None,
     )
 
 

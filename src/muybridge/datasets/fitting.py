@@ -1,7 +1,7 @@
 """Cameras for pictures that are not stored at the size they were calibrated at.
 
-Video tools that are asked for another size scale the picture to fit inside and centre it between black bars. That is the only
-change accepted here, and only where the bars are really black.
+Video tools that are asked for another size scale the picture to fit inside and centre it between black bars. That is
+the only change accepted here, and only where the bars are really black.
 """
 
 from __future__ import annotations

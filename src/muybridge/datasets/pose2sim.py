@@ -1,7 +1,7 @@
 """A Pose2Sim project or trial: Config.toml, calibration/, videos/ (or a folder of pictures a camera in it).
 
-As in Pose2Sim, what a trial's Config.toml leaves out comes from the one a level or two above, and so does the calibration.
-Cameras and videos belong together by name where all names agree, else by their order.
+As in Pose2Sim, what a trial's Config.toml leaves out comes from the one a level or two above, and so does the
+calibration. Cameras and videos belong together by name where all names agree, else by their order.
 
 Where both are there, the Qualisys file (.qca.txt) wins over the .toml made of it: one converter divided the distortion
 by 64 on the way, and the original cannot have that fault.
@@ -142,7 +142,7 @@ def _reference(folder: Path) -> Path | None:
     """What Pose2Sim itself found, filtered rather than raw."""
     found = sorted((folder / "pose-3d").glob("*.trc"))
     filtered = [path for path in found if "filt" in path.name and "LSTM" not in path.name]
-    return (filtered or found or [None])[0]
+    return next(iter(filtered or found), None)
 
 
 def _frame_rate(project: dict[str, Any]) -> float:

@@ -1,12 +1,12 @@
 """Recordings to try the program on, obtained as packages: `beam`, a man balancing before four calibrated cameras.
 
-`beam` is inside a package of the Python package index (BSD-3-Clause, see PACKAGE): 100 frames at 60 Hz, 4 videos of 1080 or
-1088 x 1920 pixels, a Qualisys calibration, checkerboards. It carries no result to compare with.
+`beam` is inside a package of the Python package index (BSD-3-Clause, see PACKAGE): 100 frames at 60 Hz, 4 videos of
+1080 or 1088 x 1920 pixels, a Qualisys calibration, checkerboards. It carries no result to compare with.
 
-What has to be put right, and is: two videos are stored scaled to 1080 columns between black bars (`fitting`); the distortion is
-taken from the Qualisys file, whose converted forms have it 64 times too small (`pose2sim`); there is no picture of the empty
-scene, so one is made of the video and the picture in which the extrinsics were measured (`segmentation.make_plate`). What is
-not: the extrinsics do not fit together by up to 13 pixels; tracking reports that.
+What has to be put right, and is: two videos are stored scaled to 1080 columns between black bars (`fitting`); the
+distortion is taken from the Qualisys file, whose converted forms have it 64 times too small (`pose2sim`); there is no
+picture of the empty scene, so one is made of the video and the picture in which the extrinsics were measured
+(`segmentation.make_plate`). What is not: the extrinsics do not fit together by up to 13 pixels; tracking reports that.
 """
 
 from __future__ import annotations

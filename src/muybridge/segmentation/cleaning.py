@@ -7,6 +7,7 @@ component stay: near means a gap of few pixels, and not too small.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -71,7 +72,7 @@ def clean(mask: NDArray, config: CleaningConfig | None = None, box: Box | None =
 def _bounds(mask: NDArray) -> tuple[slice, slice]:
     """Rows and columns of all foreground and one pixel around it: what lies outside cannot change."""
 
-    def span(used: NDArray) -> slice:
+    def span(used: Any) -> slice:
         first, last = int(np.argmax(used)), len(used) - int(np.argmax(used[::-1]))
         return slice(max(0, first - 1), last + 1)
 

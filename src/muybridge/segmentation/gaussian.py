@@ -85,7 +85,7 @@ class GaussianBackground:
         difference = check_same_shape(image, self.mean.shape).astype(np.float32) - self.mean
         squared = difference * difference
         limit = self.config.threshold**2 * np.maximum(self.variance, self.config.sd_floor**2)
-        mask = (squared > limit).any(axis=2)
+        mask: NDArray = np.any(squared > limit, axis=2)
         if self.config.update_rate:
             self._learn(difference, squared, ~mask)
         return mask

@@ -30,7 +30,8 @@ rgb 20      0.87    0.83       0.73
 rgb 30      0.85    0.84       0.73
 ==========  ======  =========  ====
 
-The capsules are no truth either: 0.77 is what perfect-looking masks reach. `lab` lets less shadow and changing light through.
+The capsules are no truth either: 0.77 is what perfect-looking masks reach. `lab` lets less shadow and changing light
+through.
 """
 
 

@@ -1,13 +1,14 @@
 """A plate of a scene that was never empty: the person's video, and one picture in which the person stands elsewhere.
 
-A median over the video alone fails where the person stays in one place; the other picture is right there, but wrong where
-the person stands in it. So: (1) where no frame of the video agrees with the other picture, that one shows the person or something
-moved, and is not believed; (2) against what is left of it, the person is found in every frame, and continued by colour into the
-disbelieved region; (3) each pixel takes the median of the frames that show background there, else the other picture, else
-it is painted over from its surroundings.
+A median over the video alone fails where the person stays in one place; the other picture is right there, but wrong
+where the person stands in it. So: (1) where no frame of the video agrees with the other picture, that one shows the
+person or something moved, and is not believed; (2) against what is left of it, the person is found in every frame, and
+continued by colour into the disbelieved region; (3) each pixel takes the median of the frames that show background
+there, else the other picture, else it is painted over from its surroundings.
 
-Painting invents what nobody saw, behind a person who never moved away: the person differs from it, which is what a plate is
-for. Believing pixels that hardly change was tried there instead, and learnt the person's shorts.
+Painting invents what nobody saw, behind a person who never moved away: the person differs from it, which is what a
+plate is for. Believing pixels that hardly change was tried there instead, and learnt the person's shorts. Where the
+person stays inside the region that is not believed, a ghost remains.
 """
 
 from __future__ import annotations
@@ -27,8 +28,8 @@ DISAGREEMENT = 25.0
 """Grey values, largest over the channels, by which every frame differs from the other picture where that is wrong."""
 PERSON = 18.0
 """Grey values by which a frame differs from the background where the person is."""
-SMALLEST = 400
-"""Pixels at FACTOR: a smaller disagreement is noise, or a foot that never left its place."""
+SMALLEST = 0.003
+"""Share of the picture: a smaller disagreement is noise, or a foot that never left its place."""
 REACH = 20
 """Pixels at FACTOR round the person in which colours are compared."""
 ARM = 50
@@ -72,7 +73,7 @@ def disagreement(pictures: Sequence[NDArray], elsewhere: NDArray) -> NDArray:
     for picture in pictures:
         closest = np.minimum(closest, _difference(picture, elsewhere))
     found = fill_holes(_close(drop_small(closest > DISAGREEMENT, 20), 15), 4000)
-    return _grow(drop_small(found, SMALLEST), 9)
+    return _grow(drop_small(found, round(SMALLEST * found.size)), 9)
 
 
 def _person(picture: NDArray, background: NDArray, disbelieved: NDArray) -> NDArray:
@@ -94,7 +95,7 @@ def _continued(picture: NDArray, seen: NDArray, disbelieved: NDArray) -> NDArray
     part = np.ascontiguousarray(label[rows, columns])
     cv2.setRNGSeed(0)  # GrabCut seeds its colour clusters from OpenCV's own generator
     models = np.zeros((1, 65)), np.zeros((1, 65))
-    cv2.grabCut(np.ascontiguousarray(picture[rows, columns]), part, None, *models, 3, cv2.GC_INIT_WITH_MASK)
+    cv2.grabCut(np.ascontiguousarray(picture[rows, columns]), part, (0, 0, 1, 1), *models, 3, cv2.GC_INIT_WITH_MASK)
     out = np.zeros_like(seen)
     out[rows, columns] = (part == cv2.GC_FGD) | (part == cv2.GC_PR_FGD)
     return keep_touching(out & disbelieved, _grow(seen, 9))
