@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from muybridge.cli.reporting import Reporting
+from muybridge.cli.reporting import Progress, Reporting
 from muybridge.errors import InputError
 
 if TYPE_CHECKING:
@@ -26,20 +27,23 @@ def write_overlays(job: Job, out: Path, reporting: Reporting) -> list[Path]:
     written = []
     for camera in job.cameras:
         try:
-            with open_pictures(camera.pictures, camera.frame_rate) as pictures:
-                with reporting.progress(f"overlay {camera.name}") as progress:
-                    total = pictures.frame_count
-                    video = write_overlay(
-                        out,
-                        rig[camera.name],
-                        pictures,
-                        body,
-                        progress=lambda done, of=total, say=progress: say(done, of),
-                    )
-                written.append(video)
+            with (
+                open_pictures(camera.pictures, camera.frame_rate) as pictures,
+                reporting.progress(f"overlay {camera.name}") as progress,
+            ):
+                tell = partial(_tell, progress, _frames_to_draw(job, pictures.frame_count))
+                written.append(write_overlay(out, rig[camera.name], pictures, body, progress=tell))
         except InputError as error:
             reporting.say(f"no overlay of {camera.name}: {error}")
     return written
+
+
+def _tell(progress: Progress, total: int, done: int) -> None:
+    progress(done, total)
+
+
+def _frames_to_draw(job: Job, count: int) -> int:
+    return count if job.frames is None else min(count, job.frames[1] + 1) - job.frames[0]
 
 
 def compare(out: Path, truth: Path | None, reporting: Reporting) -> dict[str, Any]:

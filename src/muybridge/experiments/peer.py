@@ -23,11 +23,11 @@ def silhouette_costs(body: Body, poses: np.ndarray, cameras: list[Camera], masks
     radii = np.linalg.norm(body.arrays.half_axes[body.arrays.shaped], axis=-1).max(axis=-1)
     costs = np.empty((len(poses), len(cameras)))
     for c, (camera, mask) in enumerate(zip(cameras, masks, strict=True)):
-        area = np.count_nonzero(mask)
+        area = max(int(np.count_nonzero(mask)), 1)
         for n in range(len(poses)):
             drawn = draw_body(camera, ends[n], radii)
-            inside = np.count_nonzero(drawn & mask)
-            costs[n, c] = 1.0 - 0.5 * inside * (1.0 / max(area, 1) + 1.0 / max(np.count_nonzero(drawn), 1))
+            covered = max(int(np.count_nonzero(drawn)), 1)
+            costs[n, c] = 1.0 - 0.5 * np.count_nonzero(drawn & mask) * (1.0 / area + 1.0 / covered)
     return costs
 
 

@@ -10,7 +10,7 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import lru_cache, partial
 
 import numpy as np
 
@@ -99,7 +99,7 @@ def filters(rng: np.random.Generator) -> Iterator[Measurement]:
         mean = np.clip(made.mean, made.body.lower, made.body.upper)
         state = method.init(rng, mean, np.full(len(mean), 0.02), config)
         with one_thread():
-            seconds = median_seconds(lambda m=method, s=state, c=config: m.step(rng, s, observed, dynamics, c), 3)
+            seconds = median_seconds(partial(method.step, rng, state, observed, dynamics, config), 3)
         yield Measurement(f"{label}, silhouette of one camera", 1 / seconds, "frames/s")
 
 

@@ -25,7 +25,7 @@ FrameRange = tuple[Annotated[int, Meta(ge=0)], Annotated[int, Meta(ge=0)]]
 Unit = Literal["m", "cm", "mm"]
 
 
-class CalibrationInput(Table):
+class CalibrationInput(Table, frozen=True):
     """`[calibration]`: one file for all cameras (or a folder of files), or a list of files."""
 
     file: Path | None = None
@@ -42,7 +42,7 @@ class CalibrationInput(Table):
             raise ValueError("expected either file or files")
 
 
-class BackgroundInput(Table):
+class BackgroundInput(Table, frozen=True):
     """`[camera.background]`: how the person is told from what stands still.
 
     Every other key is a setting of that model, such as `threshold`.
@@ -62,7 +62,7 @@ class BackgroundInput(Table):
         _check_range(self.empty, "empty")
 
 
-class CameraInput(Table):
+class CameraInput(Table, frozen=True):
     """`[[camera]]`: one camera's pictures, a video or a pattern (`img_%04d.png`, `*.png`), and its masks."""
 
     name: str
@@ -74,7 +74,7 @@ class CameraInput(Table):
     """Frames a second, for picture patterns; a video has its own timestamps."""
 
 
-class BodyInput(Table):
+class BodyInput(Table, frozen=True):
     """`[body]`: a model of the catalogue or a file, and how it is made to fit the person."""
 
     name: str | None = None
@@ -90,7 +90,7 @@ class BodyInput(Table):
             raise ValueError("expected name or file, got both")
 
 
-class StartInput(Table):
+class StartInput(Table, frozen=True):
     """`[start]`: where the first pose comes from."""
 
     pose: str = "auto"
@@ -107,7 +107,7 @@ class StartInput(Table):
 START_WORDS = ("auto", "reference")
 
 
-class FilterInput(Table):
+class FilterInput(Table, frozen=True):
     """`[filter]`: a method of `muybridge.filters.METHODS`; every other key is a setting of that method."""
 
     name: str = "guided"
@@ -116,7 +116,7 @@ class FilterInput(Table):
     settings: dict[str, Any] = {}
 
 
-class LikelihoodInput(Table):
+class LikelihoodInput(Table, frozen=True):
     """`[likelihood]`: the weight of each cue; 0 switches it off."""
 
     silhouette: Weight = 1.0
@@ -131,14 +131,14 @@ class LikelihoodInput(Table):
             raise ValueError("expected at least one weight above 0")
 
 
-class ReferenceInput(Table):
+class ReferenceInput(Table, frozen=True):
     """`[reference]`: another measurement of the same motion, to start from or to compare with."""
 
     file: Path
     unit: Unit | None = None
 
 
-class Job(Table):
+class Job(Table, frozen=True):
     """A whole job; `cameras` is the file's `[[camera]]`."""
 
     calibration: CalibrationInput
@@ -188,11 +188,12 @@ def read(path: Path | str, overrides: Sequence[str] = ()) -> Job:
 
 def from_table(table: Mapping[str, Any], folder: Path, *, overrides: Sequence[str] = (), source: str = "job") -> Job:
     """A job from the nested tables that its file would hold, with relative paths starting from `folder`."""
-    folder, table = Path(folder).absolute(), _tables.copied(table)
+    folder = Path(folder).absolute()
+    tables: dict[str, Any] = _tables.copied(table)
     for text in overrides:
-        _tables.override(table, text)
-    _resolve_text_paths(table, folder)
-    return _tables.convert(table, Job, folder, source)
+        _tables.override(tables, text)
+    _resolve_text_paths(tables, folder)
+    return _tables.convert(tables, Job, folder, source)
 
 
 def check_settings(job: Job) -> None:
