@@ -46,7 +46,7 @@ def code_of(text: str) -> str:
     return "\n".join(re.findall(r"```.*?```|`[^`\n]+`", text, re.DOTALL))
 
 
-@pytest.mark.parametrize("block", marked_blocks(), ids=lambda block: f"{block.page}-{block.text.split()[-1]}")
+@pytest.mark.parametrize("block", list(marked_blocks()), ids=lambda block: f"{block.page}-{block.text.split()[-1]}")
 def test_marked_blocks_run(block: Block, tmp_path: Path) -> None:
     (tmp_path / "muybridge").write_text(f'#!/bin/sh\nexec "{sys.executable}" -m muybridge "$@"\n')
     (tmp_path / "muybridge").chmod(0o755)
