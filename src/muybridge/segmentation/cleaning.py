@@ -40,7 +40,7 @@ class CleaningConfig:
 
 
 def clean(mask: NDArray, config: CleaningConfig | None = None, box: Box | None = None) -> NDArray:
-    """Median, holes, small components, then the main component and the fragments near it.
+    """Median, then the main component and the fragments near it that are not too small, then holes.
 
     Parameters
     ----------
@@ -55,18 +55,14 @@ def clean(mask: NDArray, config: CleaningConfig | None = None, box: Box | None =
     config = config or CleaningConfig()
     if config.median > 1:
         mask = median(mask, config.median)
-    rows, columns = _bounds(mask)
-    part = mask[rows, columns]
-    if not part.any():
-        return mask
-    part = drop_small(fill_holes(part, config.largest_hole), config.smallest_fragment)
     if np.isfinite(config.gap):
-        left, top = columns.start, rows.start
-        inside = None if box is None else (box[0] - left, box[1] - top, box[2] - left, box[3] - top)
-        part = keep_near_main(part, config.gap, inside)
-    out = np.zeros_like(mask)
-    out[rows, columns] = part
-    return out
+        mask = keep_near_main(mask, config.gap, box, config.smallest_fragment)
+    else:
+        mask = drop_small(mask, config.smallest_fragment)
+    if config.largest_hole and mask.any():
+        part = _bounds(mask)
+        mask[part] = fill_holes(mask[part], config.largest_hole)
+    return mask
 
 
 def _bounds(mask: NDArray) -> tuple[slice, slice]:
@@ -107,22 +103,34 @@ def drop_small(mask: NDArray, smallest: int) -> NDArray:
     return keep[label]
 
 
-def keep_near_main(mask: NDArray, gap: float, box: Box | None = None) -> NDArray:
-    """The main component and every component whose nearest pixel is within `gap` pixels of it."""
+def keep_near_main(mask: NDArray, gap: float, box: Box | None = None, smallest: int = 0) -> NDArray:
+    """The main component and every other one of at least `smallest` pixels that comes within `gap` pixels of it."""
     import cv2
 
-    count, label = cv2.connectedComponents(mask.astype(np.uint8), connectivity=8)
-    if count < 3:
-        return mask
-    votes = label if box is None else label * near(np.ones_like(mask), box)
-    pixels = np.bincount(votes.ravel(), minlength=count)[1:]
-    if not pixels.any():
-        pixels = np.bincount(label.ravel(), minlength=count)[1:]
-    main = 1 + int(np.argmax(pixels))
-    distance = cv2.distanceTransform((label != main).astype(np.uint8), cv2.DIST_L2, 5)
-    nearby = np.zeros(count, bool)
-    nearby[np.unique(label[(distance <= gap) & mask])] = True
-    return nearby[label]
+    count, label, stats, _ = cv2.connectedComponentsWithStats(mask.astype(np.uint8), connectivity=8)
+    pixels = stats[:, cv2.CC_STAT_AREA].copy()
+    pixels[0] = 0
+    keep = pixels >= max(1, smallest)
+    if np.count_nonzero(keep) < 2:
+        return keep[label]
+    main = _main(label, np.where(keep, pixels, 0), box)
+    left, top, width, height = stats[main, :4]
+    around = (
+        slice(max(0, top - int(gap) - 1), top + height + int(gap) + 1),
+        slice(max(0, left - int(gap) - 1), left + width + int(gap) + 1),
+    )
+    distance = cv2.distanceTransform((label[around] != main).astype(np.uint8), cv2.DIST_L2, 5)
+    keep &= np.bincount(label[around][distance <= gap], minlength=count) > 0
+    return keep[label]
+
+
+def _main(label: NDArray, pixels: NDArray, box: Box | None) -> int:
+    """The largest component, or the one with most pixels in the box; `pixels` is 0 for those that may not be it."""
+    if box is not None:
+        inside = np.bincount(label[near(label > 0, box)], minlength=len(pixels)) * (pixels > 0)
+        if inside.any():
+            return int(np.argmax(inside))
+    return int(np.argmax(pixels))
 
 
 def near(mask: NDArray, box: Box, margin: float = 0.0) -> NDArray:
