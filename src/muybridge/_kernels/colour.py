@@ -14,7 +14,8 @@ from muybridge._kernels._jit import kernel
 from muybridge._kernels.bits import popcount
 
 BINS, CHANNELS, LANES, COUNT_LANE = 10, 3, 32, 30
-_0, _1, _ONES = np.uint64(0), np.uint64(1), np.uint64(0xFFFFFFFFFFFFFFFF)
+TALLEST = 1023  # rows: a word column's 64 pixels times these stay below 2^16
+_0, _1, _ONES, _LANE = np.uint64(0), np.uint64(1), np.uint64(0xFFFFFFFFFFFFFFFF), np.uint64(0xFFFF)
 
 
 @kernel
@@ -28,31 +29,36 @@ def histogram_table(image, table):
             for lane in range(LANES):
                 table[y, x + 1, lane] = table[y, x, lane]
             for channel in range(CHANNELS):
-                table[y, x + 1, channel * BINS + image[y, x, channel] * BINS // 256] += np.uint16(1)
+                table[y, x + 1, channel * BINS + np.int64(image[y, x, channel]) * BINS // 256] += np.uint16(1)
             table[y, x + 1, COUNT_LANE] += np.uint16(1)
 
 
 @kernel
-def add_seen(seen, rows, top, offset, table, histogram):
+def add_seen(seen, rows, top, offset, packed, histogram):
     """Add the pixels whose bits are set in `seen` (rows,) uint64 to a histogram (LANES,) int32.
 
-    Row i of `seen` is the picture's row top + i; its bit 0 is the pixel `offset`.
+    Row i of `seen` is the picture's row top + i; its bit 0 is the pixel `offset`. `packed` (H, W + 1, 8) uint64 is a table whose
+    lanes are taken four at a time: a lane's total stays below 2^16 within a word column, so that no carry leaves it.
     """
+    s0 = s1 = s2 = s3 = s4 = s5 = s6 = s7 = _0
+    any_seen = False
     for i in range(rows):
         rest = seen[i]
         while rest != _0:
+            any_seen = True
             start = popcount(~rest & (rest - _1))  # trailing zeros
             run = ~(rest >> np.uint64(start))
             stop = start + (popcount(~run & (run - _1)) if run != _0 else 64)
-            add_run(table[top + i, offset + start], table[top + i, offset + stop], histogram)
+            before, after = packed[top + i, offset + start], packed[top + i, offset + stop]
+            s0, s1, s2, s3 = (s0 + (after[0] - before[0]), s1 + (after[1] - before[1]), s2 + (after[2] - before[2]),
+                              s3 + (after[3] - before[3]))
+            s4, s5, s6, s7 = (s4 + (after[4] - before[4]), s5 + (after[5] - before[5]), s6 + (after[6] - before[6]),
+                              s7 + (after[7] - before[7]))
             rest = rest & (_ONES << np.uint64(stop)) if stop < 64 else _0
-
-
-@kernel
-def add_run(before, after, histogram):
-    """Add the difference of two cells (LANES,) of a table."""
-    for lane in range(LANES):
-        histogram[lane] += np.int32(after[lane]) - np.int32(before[lane])
+    if any_seen:
+        for w, word in enumerate((s0, s1, s2, s3, s4, s5, s6, s7)):
+            for lane in range(4):
+                histogram[4 * w + lane] += np.int32((word >> np.uint64(16 * lane)) & _LANE)
 
 
 @kernel

@@ -116,7 +116,7 @@ def measure(poses, parent, fixed, axis, dof, shaped, ends, half_axes, cameras, w
             descriptors, coefficients, edge_maps, out, histograms_out):
     """Fill out (N, C, RESULT_COLUMNS) for poses (N, D).
 
-    masks (C, words, H + 2) uint64; tables (C, H, W + 1, LANES) uint16, roots (C, K, LANES) float32, known (C, K) bool for
+    masks (C, words, H + 2) uint64; tables (C, H, W + 1, LANES / 4) uint64 (uint16 taken four at a time), roots (C, K, LANES) float32, known (C, K) bool for
     colour; descriptors (C, 2, SIDE, SIDE) float64 for the boundary; edge_maps (C, H, W) float32. What is not wanted may have
     any size with the same number of cameras. histograms_out (N, C, K, LANES) int32 takes the counts unless it is empty.
     """

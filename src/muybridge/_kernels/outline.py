@@ -4,7 +4,7 @@ A cone's ends are ellipsoids (flat ends: discs, one half axis is zero). An end w
 around its centre, as the ellipse {c + sum_j w_j J a_j, |w| <= 1} with J the derivative of the projection: an ellipse with
 matrix M = sum_j (J a_j)(J a_j)^T and support function h(n) = sqrt(n^T M n). The cone is the convex hull of both. On its
 tangents both ends reach equally far, c_1 n + h_1(n) = c_2 n + h_2(n), which is solved for the normal n by Newton steps from
-the circles' closed form.
+the closed form for circles.
 
 A camera is a row of numbers: fx, fy, cx, cy, skew, k1, k2, p1, p2, k3, largest radius squared, R (9), t (3), width, height.
 An outline is a row of numbers: see the column names below.
@@ -24,7 +24,9 @@ CAMERA_COLUMNS = 25
 KIND, END, SIDE, TOP, BOTTOM, OUTLINE_COLUMNS = 0, 1, 13, 25, 26, 27
 NEAREST = 0.05  # metres; what is nearer than this, or behind, is not drawn
 SMALLEST = 0.01  # square pixels; keeps ellipses seen edge on from vanishing
-NEWTON_STEPS = 3
+NEWTON_STEPS = 5
+CLOSE = 1e-3  # radians; Newton's step squares the error: the next would move a 50 pixel end by 1e-4 pixels at most
+BISECTIONS = 40
 
 
 @kernel
@@ -57,34 +59,33 @@ def project(camera, x, y, z):
 def outline_of(camera, frame, ends, half_axes, out):
     """Fill one outline row for a segment with `frame` (3, 4), `ends` (2, 3) and `half_axes` (2, 3, 3) in its own frame."""
     out[KIND] = 0.0
+    # the segment's frame in the camera's: rotation r_ij, origin t_i
+    f00, f01, f02, f03 = frame[0, 0], frame[0, 1], frame[0, 2], frame[0, 3]
+    f10, f11, f12, f13 = frame[1, 0], frame[1, 1], frame[1, 2], frame[1, 3]
+    f20, f21, f22, f23 = frame[2, 0], frame[2, 1], frame[2, 2], frame[2, 3]
+    c0, c1, c2 = camera[11], camera[12], camera[13]
+    r00, r01, r02 = c0 * f00 + c1 * f10 + c2 * f20, c0 * f01 + c1 * f11 + c2 * f21, c0 * f02 + c1 * f12 + c2 * f22
+    t0 = c0 * f03 + c1 * f13 + c2 * f23 + camera[20]
+    c0, c1, c2 = camera[14], camera[15], camera[16]
+    r10, r11, r12 = c0 * f00 + c1 * f10 + c2 * f20, c0 * f01 + c1 * f11 + c2 * f21, c0 * f02 + c1 * f12 + c2 * f22
+    t1 = c0 * f03 + c1 * f13 + c2 * f23 + camera[21]
+    c0, c1, c2 = camera[17], camera[18], camera[19]
+    r20, r21, r22 = c0 * f00 + c1 * f10 + c2 * f20, c0 * f01 + c1 * f11 + c2 * f21, c0 * f02 + c1 * f12 + c2 * f22
+    t2 = c0 * f03 + c1 * f13 + c2 * f23 + camera[22]
     top, bottom = np.inf, -np.inf
     for e in range(2):
-        wx = frame[0, 0] * ends[e, 0] + frame[0, 1] * ends[e, 1] + frame[0, 2] * ends[e, 2] + frame[0, 3]
-        wy = frame[1, 0] * ends[e, 0] + frame[1, 1] * ends[e, 1] + frame[1, 2] * ends[e, 2] + frame[1, 3]
-        wz = frame[2, 0] * ends[e, 0] + frame[2, 1] * ends[e, 1] + frame[2, 2] * ends[e, 2] + frame[2, 3]
-        x = camera[11] * wx + camera[12] * wy + camera[13] * wz + camera[20]
-        y = camera[14] * wx + camera[15] * wy + camera[16] * wz + camera[21]
-        z = camera[17] * wx + camera[18] * wy + camera[19] * wz + camera[22]
+        e0, e1, e2 = ends[e, 0], ends[e, 1], ends[e, 2]
+        z = r20 * e0 + r21 * e1 + r22 * e2 + t2
         if not z > NEAREST:
             return
-        u, v, ux, uy, uz, vx, vy, vz = project(camera, x, y, z)
-        # derivative by the world point, then by the segment's own coordinates
-        u0 = ux * camera[11] + uy * camera[14] + uz * camera[17]
-        u1 = ux * camera[12] + uy * camera[15] + uz * camera[18]
-        u2 = ux * camera[13] + uy * camera[16] + uz * camera[19]
-        v0 = vx * camera[11] + vy * camera[14] + vz * camera[17]
-        v1 = vx * camera[12] + vy * camera[15] + vz * camera[18]
-        v2 = vx * camera[13] + vy * camera[16] + vz * camera[19]
-        a0 = u0 * frame[0, 0] + u1 * frame[1, 0] + u2 * frame[2, 0]
-        a1 = u0 * frame[0, 1] + u1 * frame[1, 1] + u2 * frame[2, 1]
-        a2 = u0 * frame[0, 2] + u1 * frame[1, 2] + u2 * frame[2, 2]
-        b0 = v0 * frame[0, 0] + v1 * frame[1, 0] + v2 * frame[2, 0]
-        b1 = v0 * frame[0, 1] + v1 * frame[1, 1] + v2 * frame[2, 1]
-        b2 = v0 * frame[0, 2] + v1 * frame[1, 2] + v2 * frame[2, 2]
+        u, v, ux, uy, uz, vx, vy, vz = project(camera, r00 * e0 + r01 * e1 + r02 * e2 + t0, r10 * e0 + r11 * e1 + r12 * e2 + t1, z)
+        # derivative by the segment's own coordinates
+        a0, a1, a2 = ux * r00 + uy * r10 + uz * r20, ux * r01 + uy * r11 + uz * r21, ux * r02 + uy * r12 + uz * r22
+        b0, b1, b2 = vx * r00 + vy * r10 + vz * r20, vx * r01 + vy * r11 + vz * r21, vx * r02 + vy * r12 + vz * r22
         mxx, mxy, myy = SMALLEST, 0.0, SMALLEST
         for j in range(3):
-            p = a0 * half_axes[e, j, 0] + a1 * half_axes[e, j, 1] + a2 * half_axes[e, j, 2]
-            q = b0 * half_axes[e, j, 0] + b1 * half_axes[e, j, 1] + b2 * half_axes[e, j, 2]
+            h0, h1, h2 = half_axes[e, j, 0], half_axes[e, j, 1], half_axes[e, j, 2]
+            p, q = a0 * h0 + a1 * h1 + a2 * h2, b0 * h0 + b1 * h1 + b2 * h2
             mxx += p * p
             mxy += p * q
             myy += q * q
@@ -105,44 +106,76 @@ def support(out, base, nx, ny):
 
 @kernel
 def tangents(out):
-    """Find both outer tangents of an outline's ends; leaves kind 1 where one end covers the other."""
+    """Find both outer tangents of an outline's ends; leaves kind 1 where one end covers the other.
+
+    With M_1 = L L^T and n = L^-T m the first end becomes the unit circle, and with both ends of one shape the second nearly a
+    circle: the tangents' condition d' m + h_2'(m) = 1, d' = L^-1 d, is solved in closed form for a circle, then by Newton steps.
+    """
     first, second = END, END + 6
     dx, dy = out[second] - out[first], out[second + 1] - out[first + 1]
-    distance = math.sqrt(dx * dx + dy * dy)
+    mxx, mxy, myy = out[second + 2], out[second + 3], out[second + 4]
+    l00 = math.sqrt(out[first + 2])
+    i00 = 1.0 / l00
+    l10 = out[first + 3] * i00
+    l11 = math.sqrt(out[first + 4] - l10 * l10)
+    i11 = 1.0 / l11
+    i10 = -l10 * i00 * i11
+    ex, ey = i00 * dx, i10 * dx + i11 * dy
+    distance = math.sqrt(ex * ex + ey * ey)
     if distance < 1e-9:
         return
-    ux, uy = dx / distance, dy / distance
+    # L^-1 M_2 L^-T
+    qx, qy = i10 * mxx + i11 * mxy, i10 * mxy + i11 * myy
+    nxx, nxy, nyy = i00 * i00 * mxx, i00 * qx, i10 * qx + i11 * qy
+    ux, uy = ex / distance, ey / distance
+    along = math.sqrt(nxx * ux * ux + 2.0 * nxy * ux * uy + nyy * uy * uy)
+    if abs(1.0 - along) >= distance:
+        return
+    across = math.sqrt(nxx * uy * uy - 2.0 * nxy * ux * uy + nyy * ux * ux)
+    sine = max(-0.999, min(0.999, (1.0 - across) / distance))
+    cosine = math.sqrt(1.0 - sine * sine)
     for side in range(2):
         sign = 1.0 - 2.0 * side
-        nx, ny = -uy * sign, ux * sign
-        sine = (support(out, first, nx, ny) - support(out, second, nx, ny)) / distance
-        if abs(sine) >= 1.0:
-            return
-        cosine = math.sqrt(1.0 - sine * sine)
-        nx, ny = ux * sine + nx * cosine, uy * sine + ny * cosine
-        for _ in range(NEWTON_STEPS):
-            h1, h2 = support(out, first, nx, ny), support(out, second, nx, ny)
-            px, py = -ny, nx
-            g = dx * nx + dy * ny + h2 - h1
-            slope = dx * px + dy * py
-            slope += (out[second + 2] * nx * px + out[second + 3] * (nx * py + ny * px) + out[second + 4] * ny * py) / h2
-            slope -= (out[first + 2] * nx * px + out[first + 3] * (nx * py + ny * px) + out[first + 4] * ny * py) / h1
-            if abs(slope) < 1e-9:
-                return
-            step = max(-0.5, min(0.5, -g / slope))
-            nx, ny = nx + step * px, ny + step * py
-            length = math.sqrt(nx * nx + ny * ny)
-            nx, ny = nx / length, ny / length
-        if abs(dx * nx + dy * ny + support(out, second, nx, ny) - support(out, first, nx, ny)) > 0.1:
-            return
+        mx, my = ux * sine - sign * uy * cosine, uy * sine + sign * ux * cosine
+        mx, my = tangent_normal(ex, ey, nxx, nxy, nyy, mx, my, ux, uy, sign)
+        nx, ny = i00 * mx + i10 * my, i11 * my  # L^-T m
+        scale = 1.0 / (1.0 - ex * mx - ey * my)  # 1 / h_2
         base = SIDE + 6 * side
-        out[base], out[base + 1] = nx, ny
-        for e in range(2):
-            end = END + 6 * e
-            h = support(out, end, nx, ny)
-            out[base + 2 + 2 * e] = out[end] + (out[end + 2] * nx + out[end + 3] * ny) / h
-            out[base + 3 + 2 * e] = out[end + 1] + (out[end + 3] * nx + out[end + 4] * ny) / h
+        out[base + 2], out[base + 3] = out[first] + l00 * mx, out[first + 1] + l10 * mx + l11 * my
+        out[base + 4], out[base + 5] = (out[second] + (mxx * nx + mxy * ny) * scale,
+                                        out[second + 1] + (mxy * nx + myy * ny) * scale)
+        length = 1.0 / math.sqrt(nx * nx + ny * ny)
+        out[base], out[base + 1] = nx * length, ny * length
     out[KIND] = 2.0
+
+
+@kernel
+def tangent_normal(ex, ey, nxx, nxy, nyy, mx, my, ux, uy, sign):
+    """The unit vector m with e m + sqrt(m^T N m) = 1 near the given one, on one side (`sign`) of the unit vector u."""
+    for _ in range(NEWTON_STEPS):
+        px, py = nxx * mx + nxy * my, nxy * mx + nyy * my
+        h = math.sqrt(mx * px + my * py)
+        slope = (ey * mx - ex * my) + (py * mx - px * my) / h
+        if abs(slope) < 1e-9:
+            break
+        step = (1.0 - h - ex * mx - ey * my) / slope
+        if not abs(step) < 1.0:
+            break
+        shrink = 1.0 / (1.0 + 0.25 * step * step)  # a turn by 2 atan(step / 2) needs no root
+        cosine, sine = (1.0 - 0.25 * step * step) * shrink, step * shrink
+        mx, my = cosine * mx - sine * my, sine * mx + cosine * my
+        if abs(step) < CLOSE:
+            return mx, my
+    low, high = 0.0, math.pi  # of the angle from u: the condition's left side falls from above 1 to below it
+    for _ in range(BISECTIONS):
+        angle = 0.5 * (low + high)
+        cosine, sine = math.cos(angle), sign * math.sin(angle)
+        mx, my = ux * cosine - uy * sine, uy * cosine + ux * sine
+        if ex * mx + ey * my + math.sqrt(nxx * mx * mx + 2.0 * nxy * mx * my + nyy * my * my) > 1.0:
+            low = angle
+        else:
+            high = angle
+    return mx, my
 
 
 @kernel

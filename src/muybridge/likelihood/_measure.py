@@ -65,7 +65,7 @@ def _run(poses, arrays, cameras, size, masks, colour, boundary, edge_maps, keep_
     edge_maps = np.zeros((count, 1, 1), np.float32) if edge_maps is None else edge_maps
     out = np.empty((len(poses), count, fused.RESULT_COLUMNS))
     histograms = np.empty((len(poses) if keep_histograms else 0, count, shapes, LANES), np.int32)
-    fused.measure(poses, *arrays, cameras, wanted, masks, colour.tables, colour.roots, colour.known, colour.by_area,
+    fused.measure(poses, *arrays, cameras, wanted, masks, colour.tables.view(np.uint64), colour.roots, colour.known, colour.by_area,
                   boundary.descriptors, boundary.coefficients, edge_maps, out, histograms)
     return out, histograms
 

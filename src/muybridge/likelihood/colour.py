@@ -15,7 +15,7 @@ from functools import cached_property
 
 import numpy as np
 
-from muybridge._kernels.colour import BINS, CHANNELS, COUNT_LANE, LANES, histogram_table
+from muybridge._kernels.colour import BINS, CHANNELS, COUNT_LANE, LANES, TALLEST, histogram_table
 from muybridge._kernels.fused import COLOUR
 from muybridge.body.model import BodyArrays
 from muybridge.errors import InputError
@@ -53,6 +53,8 @@ class ColourReference:
 def colour_tables(images: Sequence[np.ndarray]) -> np.ndarray:
     """Cumulative histograms (C, H, W + 1, LANES) uint16 of pictures (H, W, 3) uint8, padded to one size."""
     height, width = max(i.shape[0] for i in images), max(i.shape[1] for i in images)
+    if height > TALLEST:
+        raise InputError("pictures for colour", expected=f"at most {TALLEST} rows", got=str(height), remedy="reduce them")
     tables = np.zeros((len(images), height, width + 1, LANES), np.uint16)
     for table, image in zip(tables, images, strict=True):
         if image.ndim != 3 or image.shape[2] != 3 or image.dtype != np.uint8:
