@@ -46,6 +46,24 @@ DEMO_OUTFIT = (
     Garment("trousers", "denim", (104, 66, 44), tile=0.4),
     Garment("shoes", "plain", (40, 40, 44)),
 )
+OUTFITS = (
+    DEMO_OUTFIT,
+    (
+        Garment("shirt", "checks", (120, 84, 36), (70, 40, 24), tile=0.24),
+        Garment("trousers", "plain", (58, 62, 66), tile=0.4),
+        Garment("shoes", "plain", (150, 152, 158)),
+    ),
+    (
+        Garment("shirt", "plain", (70, 116, 62), tile=0.4),
+        Garment("trousers", "denim", (56, 50, 46), tile=0.4),
+        Garment("shoes", "plain", (30, 36, 60)),
+    ),
+    (
+        Garment("shirt", "blotches", (64, 44, 92), (150, 120, 176), tile=0.5),
+        Garment("trousers", "denim", (120, 84, 58), tile=0.4),
+        Garment("shoes", "plain", (60, 50, 46)),
+    ),
+)
 
 
 @dataclass(frozen=True)
@@ -90,9 +108,14 @@ class Stage:
 
 
 def demo_scene(seed: int = 0, *, duration: float = 3.0, rate: float = 30.0) -> Scene:
-    """A man in a striped shirt walks a bend through a room, seen whole by three cameras of 640 x 480."""
+    """Somebody walks a bend through a room, seen whole by three cameras of 640 x 480.
+
+    The seed decides who it is, what is worn, how and where they walk, where the cameras stand, and the noise.
+    """
     rng = np.random.default_rng([seed, 20051])
-    figure = load_figure("man")
+    name = str(rng.choice(["man", "woman"]))
+    outfit = OUTFITS[rng.integers(len(OUTFITS))]
+    figure = load_figure(name)
     for _ in range(200):
         motion = Motion(
             "walk",
@@ -106,7 +129,8 @@ def demo_scene(seed: int = 0, *, duration: float = 3.0, rate: float = 30.0) -> S
         )
         rig = ring(rng, 3)
         if _whole(rig, perform(figure, motion).joints):
-            return Scene(rig, motion=motion, room=Room(seed=seed), seed=seed)
+            room = Room(floor=str(rng.choice(["planks", "planks", "tiles"])), seed=seed)
+            return Scene(rig, figure=name, motion=motion, room=room, outfit=outfit, seed=seed)
     raise InputError("demo scene", expected="a clip short enough to stay in view", got=f"{duration:g} s")
 
 
