@@ -19,7 +19,8 @@ LOG_SIDE = 4
 #: Directions 0..7 clockwise on the screen from east: dx, dy.
 DX = np.array([1, 1, 0, -1, -1, -1, 0, 1], np.int64)
 DY = np.array([0, 1, 1, 1, 0, -1, -1, -1], np.int64)
-_0, _1, _3, _7, _62, _63 = np.uint64(0), np.uint64(1), np.uint64(3), np.uint64(7), np.uint64(62), np.uint64(63)
+_0, _1, _2, _3, _6, _7, _8 = (np.uint64(i) for i in (0, 1, 2, 3, 6, 7, 8))
+_62, _63 = np.uint64(62), np.uint64(63)
 
 
 def _next_directions() -> np.ndarray:
@@ -40,6 +41,8 @@ def _next_directions() -> np.ndarray:
 
 
 NEXT = _next_directions()
+#: The same with the step beside it: direction + 16 (dx + 1) + 64 (dy + 1); one look-up a step.
+STEPS = np.array([d if d == 8 else d + 16 * (DX[d] + 1) + 64 * (DY[d] + 1) for d in NEXT.tolist()], np.int64)
 
 
 def _twiddles() -> tuple[np.ndarray, np.ndarray]:
@@ -53,25 +56,29 @@ REVERSED = np.array([int(f"{i:0{LOG_SIDE}b}"[::-1], 2) for i in range(SIDE)], np
 
 
 @kernel
-def neighbourhood(canvas, x, row):
-    """The 3 x 3 bits round (x, row) of a canvas (words, rows), row by row from the top left, as a number below 512."""
-    w, b = x >> 6, x & 63
+def neighbourhood(flat, rows, x, row):
+    """The 3 x 3 bits round (x, row) of a canvas, row by row from the top left, as a number below 512.
+
+    flat (words * rows,) uint64: the canvas; indices are unsigned, which spares the test for negative ones.
+    """
+    b = x & 63
+    here = np.uint64((x >> 6) * rows + row)
+    above, middle, below = flat[here - _1], flat[here], flat[here + _1]
     if 0 < b < 63:
         shift = np.uint64(b - 1)
-        above, here, below = canvas[w, row - 1] >> shift, canvas[w, row] >> shift, canvas[w, row + 1] >> shift
+        above, middle, below = above >> shift, middle >> shift, below >> shift
     elif b == 0:
-        above, here, below = canvas[w, row - 1] << _1, canvas[w, row] << _1, canvas[w, row + 1] << _1
-        if w > 0:
-            above |= canvas[w - 1, row - 1] >> _63
-            here |= canvas[w - 1, row] >> _63
-            below |= canvas[w - 1, row + 1] >> _63
+        above, middle, below = above << _1, middle << _1, below << _1
+        if x > 0:
+            left = here - np.uint64(rows)
+            above, middle, below = above | (flat[left - _1] >> _63), middle | (flat[left] >> _63), below | (flat[left + _1] >> _63)
     else:
-        above, here, below = canvas[w, row - 1] >> _62, canvas[w, row] >> _62, canvas[w, row + 1] >> _62
-        if w + 1 < canvas.shape[0]:
-            above |= (canvas[w + 1, row - 1] & _1) << np.uint64(2)
-            here |= (canvas[w + 1, row] & _1) << np.uint64(2)
-            below |= (canvas[w + 1, row + 1] & _1) << np.uint64(2)
-    return np.int64((above & _7) | ((here & _7) << np.uint64(3)) | ((below & _7) << np.uint64(6)))
+        above, middle, below = above >> _62, middle >> _62, below >> _62
+        right = here + np.uint64(rows)
+        if right < np.uint64(flat.shape[0]):
+            above, middle, below = (above | ((flat[right - _1] & _1) << _2), middle | ((flat[right] & _1) << _2),
+                                    below | ((flat[right + _1] & _1) << _2))
+    return (above & _7) | ((middle & _7) << _3) | ((below & _7) << _6)
 
 
 @kernel
@@ -89,23 +96,24 @@ def start_pixel(canvas, top, bottom):
 def trace_border(canvas, x, y, xs, ys):
     """Follow the outer border from its start pixel, clockwise on the screen; returns its length and twice its signed area.
 
-    canvas (words, H + 2) uint64 with empty spare rows; xs, ys int32 take the pixels. Stops when full.
+    canvas (words, H + 2) uint64 with empty spare rows; xs, ys int32 take the pixels. Stops when one place is left.
     """
-    limit = xs.shape[0]
-    direction = np.int64(NEXT[neighbourhood(canvas, x, y + 1) * 8])
+    limit, rows = xs.shape[0] - 1, canvas.shape[1]
+    flat = canvas.reshape(canvas.shape[0] * rows)
     xs[0], ys[0] = x, y
-    if direction == 8:
+    first = STEPS[neighbourhood(flat, rows, x, y + 1) * _8]
+    if first == 8:
         return 1, 0
-    start_x, start_y, first = x, y, direction
+    start_x, start_y, step = x, y, first
     count, area = 1, 0
     while True:
-        step_x, step_y = DX[direction], DY[direction]
-        area += x * step_y - y * step_x
-        x, y = x + step_x, y + step_y
-        direction = np.int64(NEXT[neighbourhood(canvas, x, y + 1) * 8 + direction])
-        if (x == start_x and y == start_y and direction == first) or count == limit:
+        dx, dy = ((step >> 4) & 3) - 1, (step >> 6) - 1
+        area += x * dy - y * dx
+        x, y = x + dx, y + dy
+        step = STEPS[neighbourhood(flat, rows, x, y + 1) * _8 + np.uint64(step & 7)]
+        if (x == start_x and y == start_y and step == first) or count == limit:
             return count, area
-        xs[count], ys[count] = x, y
+        xs[np.uint64(count)], ys[np.uint64(count)] = x, y
         count += 1
 
 
@@ -147,15 +155,18 @@ def trace_largest(canvas, top, bottom, pixels, spare, xs, ys):
 
 @kernel
 def resample_closed(xs, ys, count, real, imaginary):
-    """SAMPLES points at equal steps along a closed curve of `count` pixels, linear between them, from its start."""
+    """SAMPLES points at equal steps along a closed curve of `count` pixels, linear between them, from its start.
+
+    xs, ys have room for one more: the first pixel is repeated there.
+    """
+    xs[count], ys[count] = xs[0], ys[0]
     step = count / SAMPLES
     for i in range(SAMPLES):
         place = i * step
-        j = int(place)
-        part = place - j
-        k = j + 1 if j + 1 < count else 0
-        real[i] = xs[j] + part * (xs[k] - xs[j])
-        imaginary[i] = ys[j] + part * (ys[k] - ys[j])
+        j = np.uint64(place)
+        part = place - np.float64(j)
+        real[i] = (1.0 - part) * xs[j] + part * xs[j + _1]
+        imaginary[i] = (1.0 - part) * ys[j] + part * ys[j + _1]
 
 
 @kernel

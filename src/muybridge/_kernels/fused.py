@@ -128,7 +128,7 @@ def measure(poses, parent, fixed, axis, dof, shaped, ends, half_axes, cameras, w
         spare = np.empty(canvas.shape, np.uint64)
         first, last, seen = np.empty(rows, np.int64), np.empty(rows, np.int64), np.empty(rows, np.uint64)
         histograms = np.zeros((shapes, LANES), np.int32)
-        longest = masks.shape[1] * 64 * rows if wanted & WANT_BOUNDARY else 1
+        longest = masks.shape[1] * 64 * rows if wanted & WANT_BOUNDARY else 2
         xs, ys, square = np.empty(longest, np.int32), np.empty(longest, np.int32), np.empty((4, SIDE, SIDE))
         for n in range(chunk * CHUNK, min(count, (chunk + 1) * CHUNK)):
             one_chain(poses[n], parent, fixed, axis, dof, frames)
