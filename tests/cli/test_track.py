@@ -73,7 +73,7 @@ def pretend(monkeypatch: pytest.MonkeyPatch, summary: Summary) -> list[jobs.Job]
     """Replace the tracker; the list fills with the jobs that it was given."""
     given: list[jobs.Job] = []
 
-    def run(job: jobs.Job, out: Path, *, progress: object = None) -> Summary:
+    def run(job: jobs.Job, out: Path, progress: object = None, *, resume: bool = False) -> Summary:
         given.append(job)
         write_run(out)
         return summary
@@ -118,7 +118,7 @@ class TestTrack:
         assert given[0].seed == 7 and given[0].filter.settings == {"particles": 50} and not given[0].body.fit
 
     def test_interrupted(self, scene: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture) -> None:
-        def run(job: jobs.Job, out: Path, *, progress: object = None) -> Summary:
+        def run(job: jobs.Job, out: Path, progress: object = None, *, resume: bool = False) -> Summary:
             write_run(out, frames=2)
             raise KeyboardInterrupt
 

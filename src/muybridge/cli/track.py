@@ -23,6 +23,7 @@ def track(
     out: Path | None = None,
     seed: int | None = None,
     set_: Overrides = None,
+    resume: Annotated[bool, Parameter(negative=(), show_default=False)] = False,
     overlay: bool = True,
     reporting: Reporting = DEFAULT_REPORTING,
 ) -> int:
@@ -38,6 +39,8 @@ def track(
         Wins over the job's seed.
     set_
         One setting of the job, KEY=VALUE, such as filter.particles=1000; may be repeated.
+    resume
+        Go on where an interrupted run of the same job into the same folder stopped.
     overlay
         Draw the run over the pictures of each camera.
     """
@@ -46,17 +49,17 @@ def track(
     overrides = [*(set_ or []), *([] if seed is None else [f"seed={seed}"])]
     described = read(job, overrides)
     check_settings(described)
-    return run_and_tell(described, out or Path("runs") / described.name, reporting, overlay=overlay)
+    return run_and_tell(described, out or Path("runs") / described.name, reporting, resume=resume, overlay=overlay)
 
 
-def run_and_tell(job: Job, out: Path, reporting: Reporting, *, overlay: bool = True) -> int:
+def run_and_tell(job: Job, out: Path, reporting: Reporting, *, resume: bool = False, overlay: bool = True) -> int:
     """Track, and say what came of it; LOST where the person was lost for good."""
     from muybridge.cli.aftermath import compare, write_overlays
     from muybridge.tracking import run
 
     try:
         with reporting.progress(job.name) as progress:
-            summary = run(job, out, progress=progress)
+            summary = run(job, out, progress, resume=resume)
         reporting.say(f"{summary.frames} frames, {summary.status}")
         overlays = write_overlays(job, out, reporting) if overlay else []
         comparison = compare(out, job.reference.file if job.reference else None, reporting)
