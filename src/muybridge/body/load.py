@@ -17,7 +17,7 @@ import numpy as np
 from muybridge.body.model import Body, Landmark, Rotation, Segment, Shape
 from muybridge.errors import InputError
 
-_SEGMENT_KEYS = {"name", "parent", "at", "offset_m", "orientation_deg", "rotations", "shape", "length_group", "offset_group",
+_SEGMENT_KEYS = {"name", "parent", "at", "offset_m", "orientation_deg", "orientation", "rotations", "shape", "length_group", "offset_group",
                  "radius_group", "block"}
 _SHAPE_KEYS = {"base_m", "tip_m", "radii_m", "scale", "side", "ends"}
 _BODY_KEYS = {"name", "source", "height_m", "segment", "joints"}
@@ -62,6 +62,56 @@ def parse_body(text: str, where: str = "body") -> Body:
     return Body(data["name"], segments, marks, float(data.get("height_m", 1.75)), data.get("source", ""))
 
 
+def write_body(path: str | Path, body: Body) -> None:
+    """Write a body as TOML that `read_body` reads back exactly."""
+    Path(path).write_text(dump_body(body), encoding="utf8")
+
+
+def dump_body(body: Body) -> str:
+    """A body as TOML text; numbers keep every digit."""
+    lines = [f"name = {_quoted(body.name)}", f"source = {_quoted(body.source)}", f"height_m = {float(body.height)!r}", ""]
+    for segment in body.segments:
+        lines += ["[[segment]]", *_segment_lines(segment), ""]
+    lines.append("[joints]")
+    for name, mark in body.landmarks.items():
+        at = "tip" if mark.at_tip else "origin"
+        lines.append(f'{name} = {{segment = {_quoted(mark.segment)}, at = "{at}", offset_m = {_listed(mark.offset)}}}')
+    return "\n".join(lines) + "\n"
+
+
+def _segment_lines(segment: Segment) -> list[str]:
+    turns = ", ".join(_rotation_text(rotation) for rotation in segment.rotations)
+    lines = [
+        f"name = {_quoted(segment.name)}",
+        f"parent = {_quoted(segment.parent)}",
+        f'at = "{"tip" if segment.at_tip else "origin"}"',
+        f"offset_m = {_listed(segment.offset)}",
+        f"orientation = [{', '.join(_listed(row) for row in segment.orientation)}]",
+        f"rotations = [{turns}]",
+        *(f"{key} = {_quoted(getattr(segment, key))}" for key in ("length_group", "offset_group", "radius_group", "block")),
+    ]
+    if segment.shape is not None:
+        s = segment.shape
+        lines.append(f"shape = {{base_m = {_listed(s.base)}, tip_m = {_listed(s.tip)}, radii_m = {_listed(s.radii)}, "
+                     f'scale = {_listed(s.scale)}, side = {_listed(s.side)}, ends = "{"round" if s.round_ends else "flat"}"}}')
+    return lines
+
+
+def _rotation_text(rotation: Rotation) -> str:
+    limits = ""
+    if np.isfinite(rotation.lower) and np.isfinite(rotation.upper):
+        limits = f", limits_rad = [{rotation.lower!r}, {rotation.upper!r}]"
+    return f'{{name = {_quoted(rotation.name)}, axis = "{rotation.axis}"{limits}}}'
+
+
+def _quoted(text: str) -> str:
+    return '"' + text.replace("\\", "\\\\").replace('"', '\\"') + '"'
+
+
+def _listed(numbers: Any) -> str:
+    return "[" + ", ".join(repr(float(v)) for v in numbers) + "]"
+
+
 def _check_keys(where: str, entry: Mapping[str, Any], known: set[str], needed: set[str]) -> None:
     if not isinstance(entry, Mapping):
         raise InputError(where, expected="a table", got=repr(entry))
@@ -97,7 +147,8 @@ def _segment(where: str, entry: Mapping[str, Any]) -> Segment:
         parent=entry.get("parent", ""),
         offset=_numbers(f"{where}: offset_m", entry.get("offset_m", (0, 0, 0)), 3),  # type: ignore[arg-type]
         at_tip=at == "tip",
-        orientation=_orientation(where, entry.get("orientation_deg", ())),
+        orientation=_matrix(where, entry["orientation"]) if "orientation" in entry
+        else _orientation(where, entry.get("orientation_deg", ())),
         rotations=tuple(_rotation(where, turn) for turn in entry.get("rotations", ())),
         shape=shape,
         length_group=entry.get("length_group", pooled if shape and shape.base != shape.tip else ""),
@@ -124,9 +175,12 @@ def _shape(where: str, entry: Mapping[str, Any]) -> Shape:
 
 
 def _rotation(where: str, entry: Mapping[str, Any]) -> Rotation:
-    _check_keys(f"{where}: rotation", entry, {"name", "axis", "limits_deg"}, {"name", "axis"})
-    limits = entry.get("limits_deg")
-    lower, upper = (-np.inf, np.inf) if limits is None else np.radians(_numbers(f"{where}: limits_deg", limits, 2))
+    _check_keys(f"{where}: rotation", entry, {"name", "axis", "limits_deg", "limits_rad"}, {"name", "axis"})
+    lower, upper = -np.inf, np.inf
+    if "limits_deg" in entry:
+        lower, upper = np.radians(_numbers(f"{where}: limits_deg", entry["limits_deg"], 2))
+    elif "limits_rad" in entry:
+        lower, upper = _numbers(f"{where}: limits_rad", entry["limits_rad"], 2)
     return Rotation(entry["name"], entry["axis"], float(lower), float(upper))
 
 
@@ -143,6 +197,15 @@ def _orientation(where: str, turns: Any) -> tuple[tuple[float, float, float], ..
         one[i, j], one[j, i] = -sine, sine
         matrix = matrix @ one
     return tuple(tuple(float(v) for v in row) for row in matrix)  # type: ignore[return-value]
+
+
+def _matrix(where: str, rows: Any) -> tuple[tuple[float, float, float], ...]:
+    """A fixed turn as its rotation matrix, for turns that are no chain of axes."""
+    flat = _numbers(f"{where}: orientation", [v for row in rows for v in row], 9)
+    matrix = np.array(flat).reshape(3, 3)
+    if np.abs(matrix @ matrix.T - np.eye(3)).max() > 1e-6 or np.linalg.det(matrix) < 0:
+        raise InputError(f"{where}: orientation", expected="a right-handed rotation matrix", got=repr(rows))
+    return tuple(tuple(row) for row in matrix.tolist())  # type: ignore[return-value]
 
 
 def _landmark(where: str, name: str, entry: Mapping[str, Any]) -> Landmark:

@@ -12,14 +12,15 @@ Merwe et al. 2000; Doucet, Godsill and Andrieu 2000, section II-D) for the draw.
 symbol                name
 ====================  ==========================================
 x^-                   prediction, the dynamics' mean
-Q                     dynamics.noise_sd squared, diagonal
+P, Q                  State.covariance; dynamics.noise_sd squared, diagonal
+Lambda                prior precision, (P + Q)^-1
 H_L, g                likelihood.normal_equations: curvature, gradient
 s_i                   Config.spreads, metres
 kappa                 Config.dependence
 ====================  ==========================================
 
-Each step of the climb solves (H_L + Q^-1) d = g + Q^-1 (x^- - x) and goes from x to x + d. The posterior's covariance is
-(H_L / (kappa v) + Q^-1)^-1: v is the residuals' variance relative to the one assumed, found in each frame, and kappa the
+Each step of the climb solves (H_L + Lambda) d = g + Lambda (x^- - x) and goes from x to x + d. The posterior's covariance,
+the next frame's P, is (H_L / (kappa v) + Lambda)^-1: v is the residuals' variance relative to the one assumed, found in each frame, and kappa the
 number of neighbouring residuals that err together.
 
 Cost: `len(spreads)` looks at the contour and N likelihood evaluations a frame; N = 0 reports the mode and its curvature.
@@ -32,6 +33,7 @@ from typing import Literal, Protocol
 
 import numpy as np
 
+from muybridge.errors import InputError
 from muybridge.filters.dynamics import Dynamics, reflect
 from muybridge.filters.particles import FloatArray, Weights
 from muybridge.filters.state import (
@@ -41,11 +43,11 @@ from muybridge.filters.state import (
     Layers,
     Likelihood,
     Population,
-    State,
     conclude,
     initial_state,
     require,
 )
+from muybridge.filters.state import State as CommonState
 
 LARGEST_TURN = 0.3  # radians; a step that would turn any joint further is shortened
 
@@ -79,6 +81,7 @@ class Config(CommonConfig):
 
     particles: int = 300  # N; drawn around the mode
     resampling: str = "systematic"
+    sharpness: float = 200.0  # K, where the likelihood weighs
     estimate: Literal["mean", "maximum"] = "mean"
     spreads: tuple[float, ...] = (0.2, 0.13, 0.085, 0.06, 0.045, 0.035, 0.03, 0.025)  # metres, one a step, falling
     dependence: float = 7.0  # kappa; makes the 95 % regions hold on rendered scenes, see docs/benchmarks.md
@@ -90,6 +93,13 @@ class Config(CommonConfig):
         require("spreads", len(self.spreads) > 0 and falling, "positive metres, falling", self.spreads)
         require("dependence", self.dependence > 0, "above 0", self.dependence)
         require("weighting", self.weighting in ("laplace", "likelihood", "importance"), "laplace | likelihood | importance", self.weighting)
+
+
+@dataclass(frozen=True, eq=False)
+class State(CommonState):
+    """With the posterior's covariance (D, D), which the next frame's prediction starts from."""
+
+    covariance: FloatArray
 
 
 PRINTED = Config()  # ours: there is no paper's setting to keep
@@ -105,53 +115,64 @@ def init(
     upper: FloatArray | None = None,
 ) -> State:
     """Particles around a known pose. mean, sd, lower, upper : (D,) float64, the state's units."""
-    return initial_state(rng, mean, sd, config.particles, lower, upper)
+    state = initial_state(rng, mean, sd, config.particles, lower, upper)
+    return State(**vars(state), covariance=np.diag(np.square(np.asarray(sd, dtype=np.float64))))
 
 
 def step(
     rng: np.random.Generator, state: State, likelihood: GuidingLikelihood, dynamics: Dynamics, config: Config = WORKING
 ) -> tuple[State, Info]:
     """One frame: predict, climb, draw, weigh."""
+    if not hasattr(likelihood, "normal_equations"):
+        raise InputError("guided filter", expected="a likelihood with normal_equations", got=type(likelihood).__name__)
     counted = CountingLikelihood(likelihood)
     prediction = dynamics.sample(rng, state.estimate[None], state.velocity, 0.0)[0]
-    mode, seen = climb(prediction, likelihood, dynamics, config)
-    precision = seen.curvature / (config.dependence * seen.noise) + np.diag(dynamics.noise_sd**-2.0)
-    factor = np.linalg.cholesky(precision)
+    prior = _prior_precision(state.covariance, dynamics)
+    mode, seen = climb(prediction, prior, likelihood, dynamics, config)
+    precision = seen.curvature / (config.dependence * seen.noise) + prior
+    covariance = np.linalg.inv(precision)
     standard = rng.standard_normal((config.particles, mode.size))
     standard[0] = 0.0  # the mode itself is always among them
-    particles = reflect(mode + np.linalg.solve(factor.T, standard.T).T, dynamics.lower, dynamics.upper)
+    deviations = np.linalg.solve(np.linalg.cholesky(precision).T, standard.T).T
+    particles = reflect(mode + deviations, dynamics.lower, dynamics.upper)
     log_likelihoods = counted.log_prob(particles)
-    log_weights = _log_weights(particles, log_likelihoods, standard, prediction, dynamics, config)
+    log_weights = _log_weights(particles, log_likelihoods, standard, prior, prediction, config)
     layers = Layers()
     layers.append(Weights(log_weights).survival_rate, config.sharpness)
     population = Population(particles, log_likelihoods)
     following, info = conclude(state, particles, population, log_weights, counted, config, layers)
     if config.weighting == "laplace" and not info.collapsed:  # equal weights: their mean is the mode plus noise
         following = replace(following, estimate=mode, velocity=mode - state.estimate)
-    return following, info
+    return following if info.collapsed else replace(following, covariance=covariance), info
 
 
 def climb(
-    prediction: FloatArray, likelihood: GuidingLikelihood, dynamics: Dynamics, config: Config
+    prediction: FloatArray, prior: FloatArray, likelihood: GuidingLikelihood, dynamics: Dynamics, config: Config
 ) -> tuple[FloatArray, Linearised]:
-    """The posterior's mode near the prediction (D,), and the likelihood's curvature there."""
-    precision, mode = dynamics.noise_sd**-2.0, prediction
+    """The posterior's mode near the prediction (D,) of precision `prior` (D, D), and the likelihood's curvature there."""
+    mode = prediction
     for spread in config.spreads:
         seen = likelihood.normal_equations(mode, spread)
-        change = np.linalg.solve(
-            seen.curvature + np.diag(precision), seen.gradient + precision * (prediction - mode)
-        )
+        change = np.linalg.solve(seen.curvature + prior, seen.gradient + prior @ (prediction - mode))
         change *= min(1.0, LARGEST_TURN / max(1e-12, float(np.abs(change).max())))
         mode = np.clip(mode + change, dynamics.lower, dynamics.upper)
     return mode, seen
+
+
+def _prior_precision(covariance: FloatArray, dynamics: Dynamics) -> FloatArray:
+    """(P + Q)^-1, (D, D); no less than what the limits know."""
+    span = dynamics.upper - dynamics.lower
+    known = np.where(np.isfinite(span), 12.0 / np.maximum(span, 1e-6) ** 2, 1e-9)  # of a uniform density
+    moved = covariance + np.diag(np.maximum(dynamics.noise_sd, 1e-9) ** 2)
+    return np.linalg.inv(moved) + np.diag(known)
 
 
 def _log_weights(
     particles: FloatArray,
     log_likelihoods: FloatArray,
     standard: FloatArray,
+    prior: FloatArray,
     prediction: FloatArray,
-    dynamics: Dynamics,
     config: Config,
 ) -> FloatArray:
     """Unnormalised log weights (N,): of equal draws, by the likelihood, or by posterior over proposal."""
@@ -160,6 +181,7 @@ def _log_weights(
         return possible
     if config.weighting == "likelihood":
         return config.sharpness * log_likelihoods
-    log_prior = -0.5 * np.sum(((particles - prediction) / dynamics.noise_sd) ** 2, axis=1)
+    away = particles - prediction
+    log_prior = -0.5 * np.einsum("nd,de,ne->n", away, prior, away)
     log_proposal = -0.5 * np.sum(standard**2, axis=1)
     return config.sharpness * log_likelihoods + log_prior - log_proposal

@@ -35,8 +35,6 @@ class ImageLikelihood:
         Every camera's masks are reduced by this factor before anything is measured.
     row_sd : float, metres
         Error of one contour point, with neighbours' dependence in it.
-    sharpness : float
-        K: multiplies the silhouette's negative cost in `log_prob`.
     weights : (C,) float
         Of each camera; a camera whose masks are bad can be made to count less.
     """
@@ -45,7 +43,6 @@ class ImageLikelihood:
     rig: Rig
     reductions: tuple[int, ...]
     row_sd: float = 0.02
-    sharpness: float = 200.0
     weights: tuple[float, ...] = ()
 
     @cached_property
@@ -110,7 +107,7 @@ class Observation:
 
     def log_prob(self, poses: np.ndarray) -> np.ndarray:
         """Log likelihood (N,) of poses (N, D), up to a constant."""
-        return -self.model.sharpness * (self.costs(poses) @ self.model.camera_weights) / len(self.model.rig)
+        return -np.einsum("nc,c->n", self.costs(poses), self.model.camera_weights) / len(self.model.rig)
 
     def contour(self, pose: np.ndarray, spread: float, side_points: int = SIDE_POINTS) -> ContourRows:
         """Contour residuals of one pose (D,); see `likelihood.contour`."""

@@ -1,0 +1,161 @@
+"""From a job's pictures to masks, camera by camera: ready-made ones, or the difference to a background.
+
+Only the neighbourhood of where the person is expected is looked at: clutter elsewhere costs nothing and time is saved.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from contextlib import ExitStack
+from dataclasses import dataclass, field
+
+import cv2
+import numpy as np
+
+from muybridge.cameras.model import Camera, Rig
+from muybridge.errors import InputError
+from muybridge.io.job import CameraInput, Job, background_config
+from muybridge.io.video import open_masks, open_pictures
+from muybridge.segmentation import BACKGROUND_MODELS, CleaningConfig, Segmenter, ShadowConfig, reduce_image
+
+MARGIN_M = 0.45  # metres round the expected joints in which the person is looked for
+MEDIAN = 5  # pixels of a ready-made mask; takes speckle away
+TRAINING_FRAMES = 100  # at most, of the empty scene
+
+
+@dataclass(frozen=True, eq=False)
+class Eye:
+    """One camera's way from what is read to a mask."""
+
+    camera: Camera
+    reduction: int
+    segmenter: Segmenter | None
+
+    def mask(self, image: np.ndarray, expected: np.ndarray | None) -> np.ndarray:
+        """The person's mask, at recorded or reduced size.
+
+        Parameters
+        ----------
+        image : (H, W, 3) uint8, or (H, W) bool where masks are ready-made
+        expected : (J, 3) float64, metres, world, or None for anywhere
+        """
+        box = None if expected is None else self._box(expected)
+        if self.segmenter is None:
+            return _inside(image, box)
+        if box is None:
+            return self.segmenter.apply(image)
+        small = tuple((v + 0.5) / self.reduction - 0.5 for v in box)
+        mask = self.segmenter.apply(image, small)  # type: ignore[arg-type]
+        return _inside(mask, tuple(int(round(v)) for v in small), median=1)  # type: ignore[arg-type]
+
+    def _box(self, joints: np.ndarray) -> tuple[int, int, int, int] | None:
+        """Left, top, right, bottom in recorded pixels; None where the joints are not before the camera."""
+        pixels = self.camera.world_to_pixel(joints)
+        pixels = pixels[np.isfinite(pixels).all(axis=1)]
+        if not len(pixels):
+            return None
+        depth = max(0.3, float(np.median(self.camera.world_to_camera(joints)[:, 2])))
+        margin = MARGIN_M * np.sqrt(self.camera.matrix[0, 0] * self.camera.matrix[1, 1]) / depth
+        (left, top), (right, bottom) = pixels.min(axis=0) - margin, pixels.max(axis=0) + margin
+        return int(left), int(top), int(np.ceil(right)), int(np.ceil(bottom))
+
+
+def _inside(mask: np.ndarray, box: tuple[int, int, int, int] | None, median: int = MEDIAN) -> np.ndarray:
+    """The mask without speckle inside the box, and nothing outside it."""
+    if box is None:
+        return cv2.medianBlur(mask.view(np.uint8), median).view(bool) if median > 1 else mask
+    height, width = mask.shape
+    left, top = max(0, box[0]), max(0, box[1])
+    right, bottom = min(width, box[2] + 1), min(height, box[3] + 1)
+    out = np.zeros_like(mask)
+    if left < right and top < bottom:
+        part = np.ascontiguousarray(mask[top:bottom, left:right])
+        out[top:bottom, left:right] = cv2.medianBlur(part.view(np.uint8), median).view(bool) if median > 1 else part
+    return out
+
+
+@dataclass
+class Eyes:
+    """All cameras of a job, opened; a context manager that closes them."""
+
+    rig: Rig
+    reductions: tuple[int, ...]
+    eyes: list[Eye] = field(default_factory=list)
+    sources: list = field(default_factory=list)
+    _stack: ExitStack = field(default_factory=ExitStack)
+
+    def masks(self, images: Sequence[np.ndarray], expected: np.ndarray | None) -> list[np.ndarray]:
+        """Masks of one frame; `expected` (J, 3) metres: where the joints should be."""
+        return [eye.mask(image, expected) for eye, image in zip(self.eyes, images, strict=True)]
+
+    def read(self, index: int) -> list[np.ndarray]:
+        """What every camera shows in one frame."""
+        return [source.read(index) for source in self.sources]
+
+    def __enter__(self) -> Eyes:
+        return self
+
+    def __exit__(self, *exc: object) -> None:
+        self._stack.close()
+
+
+def open_eyes(job: Job, rig: Rig, reductions: tuple[int, ...]) -> Eyes:
+    """Open every camera's pictures (or ready-made masks) and train its background."""
+    eyes = Eyes(rig, reductions)
+    try:
+        for entry, camera, reduction in zip(job.cameras, rig, reductions, strict=True):
+            if entry.masks is not None:
+                source = open_masks(entry.masks, entry.frame_rate)
+                eyes.eyes.append(Eye(camera, reduction, None))
+            else:
+                source = open_pictures(entry.pictures, entry.frame_rate)
+                eyes.eyes.append(Eye(camera, reduction, build_segmenter(entry, reduction)))
+            eyes.sources.append(source)
+            eyes._stack.callback(source.close)
+            if tuple(source.size) != tuple(camera.size):
+                raise InputError(f"camera {camera.name!r}", expected=f"pictures of {_sized(camera.size)} as calibrated",
+                                 got=_sized(source.size), remedy="give the calibration of these pictures")
+    except BaseException:
+        eyes._stack.close()
+        raise
+    return eyes
+
+
+def _sized(size: Sequence[int]) -> str:
+    return f"{size[0]} x {size[1]}"
+
+
+def build_segmenter(entry: CameraInput, reduction: int) -> Segmenter:
+    """The camera's background model, trained at the reduced size."""
+    background = entry.background
+    if background is None:
+        raise InputError(f"camera {entry.name!r}", expected="masks or a [camera.background]", got="neither",
+                         remedy="give masks, a plate, empty frames, or a hue")
+    config = background_config(entry)
+    model = BACKGROUND_MODELS[background.kind]
+    empty = _empty_pictures(entry, reduction) if model.needs_pictures else []
+    in_colour = not empty or (empty[0].ndim == 3)
+    shadows = in_colour if background.shadows is None else background.shadows
+    return Segmenter(model.build(empty, config), 1.0 / reduction, ShadowConfig() if shadows else None, CleaningConfig())
+
+
+def _empty_pictures(entry: CameraInput, reduction: int) -> list[np.ndarray]:
+    """Reduced pictures of the empty scene, evenly taken, at most `TRAINING_FRAMES`."""
+    background = entry.background
+    if background is None:
+        return []
+    with open_pictures(background.file or entry.pictures, entry.frame_rate) as source:
+        first, last = background.empty or (0, source.frame_count - 1)
+        if background.file is not None and background.empty is None:
+            first, last = 0, source.frame_count - 1
+        if not 0 <= first <= last < source.frame_count:
+            raise InputError(f"camera {entry.name!r}: empty", expected=f"frames within 0 to {source.frame_count - 1}",
+                             got=f"{first} to {last}")
+        chosen = set(np.unique(np.linspace(first, last, min(TRAINING_FRAMES, last - first + 1)).round().astype(int)).tolist())
+        pictures = []
+        for index, _, image in source.frames(first):
+            if index > last:
+                break
+            if index in chosen:
+                pictures.append(reduce_image(image, 1.0 / reduction))
+    return pictures

@@ -1,0 +1,188 @@
+"""One person, frame by frame: masks in, joints with their standard deviations out.
+
+`Tracker` holds what is fixed (body, cameras, settings); a `TrackState` is what the next frame needs. The loop over frames is
+the user's own if wanted:
+
+    state = tracker.init(rng, first_pose)
+    for masks in frames:
+        state, estimate = tracker.step(rng, state, masks)
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from muybridge.filters import METHODS, CommonConfig, ConstantVelocity, Info, State, Weights
+from muybridge.likelihood.observation import ImageLikelihood, Observation
+
+TRACKED, DOUBTFUL, UNSEEN, LOST = "tracked", "doubtful", "unseen", "lost"
+
+
+@dataclass(frozen=True)
+class TrackerConfig:
+    """How a person may move, and when a frame is doubted."""
+
+    method: str = "guided"  # a row of filters.METHODS
+    filter: CommonConfig | None = None  # None: the method's working settings
+    root_speed: float = 1.25  # metres a second, one standard deviation
+    turn_speed: float = 3.75  # radians a second, one standard deviation
+    velocity_gain: float = 0.5  # share of the last step that the prediction repeats; 1 feeds noise back
+    doubtful_cost: float = 0.40  # two-sided silhouette cost from which a frame is doubted
+    doubtful_ratio: float = 1.6  # or this many times the run's usual cost
+    patience: int = 8  # doubted or unseen frames in a row after which the person counts as lost
+    trust: float = 0.05  # added to a camera's usual cost before weights are taken as its inverse
+
+
+@dataclass(frozen=True, eq=False)
+class TrackState:
+    """What the next frame needs. usual_costs (C,): running mean of each camera's cost; troubled: bad frames in a row."""
+
+    filter: State
+    usual_costs: np.ndarray
+    troubled: int = 0
+    seen: int = 0
+
+    def to_arrays(self) -> dict[str, np.ndarray]:
+        """Named arrays, for a checkpoint."""
+        arrays = {f"filter_{name}": np.asarray(value) for name, value in vars(self.filter).items()}
+        return arrays | {"usual_costs": self.usual_costs, "troubled": np.array(self.troubled), "seen": np.array(self.seen)}
+
+
+@dataclass(frozen=True, eq=False)
+class Estimate:
+    """What is known after a frame.
+
+    pose : (D,) metres and radians; joints : (J, 3) metres, world; joint_sd : (J,) metres, standard deviation per axis
+    costs : (C,) two-sided silhouette cost in each camera; status : tracked, doubtful, unseen or lost
+    """
+
+    pose: np.ndarray
+    joints: np.ndarray
+    joint_sd: np.ndarray
+    costs: np.ndarray
+    status: str
+    info: Info | None = field(default=None)
+
+    @property
+    def ess(self) -> float:
+        return self.info.ess if self.info is not None else float("nan")
+
+    @property
+    def evaluations(self) -> int:
+        return self.info.evaluations if self.info is not None else 0
+
+
+@dataclass(frozen=True)
+class Tracker:
+    """Tracks one person through frames that are `interval` seconds apart."""
+
+    model: ImageLikelihood
+    interval: float  # seconds
+    config: TrackerConfig = TrackerConfig()
+
+    @cached_property
+    def dynamics(self) -> ConstantVelocity:
+        """Constant velocity with noise in proportion to the time between frames."""
+        body = self.model.body
+        sd = np.full(len(body.dof_names), self.config.turn_speed * self.interval)
+        sd[:3] = self.config.root_speed * self.interval
+        return ConstantVelocity(sd, body.lower, body.upper, self.config.velocity_gain)
+
+    @cached_property
+    def filter_config(self) -> Any:
+        return self.config.filter or METHODS[self.config.method].WORKING
+
+    def init(self, rng: np.random.Generator, pose: np.ndarray) -> TrackState:
+        """A state that believes in one pose (D,)."""
+        method = METHODS[self.config.method]
+        sd = self.dynamics.noise_sd
+        state = method.init(rng, pose, sd, self.filter_config, self.dynamics.lower, self.dynamics.upper)
+        return TrackState(state, np.full(len(self.model.rig), np.nan))
+
+    def restore(self, arrays: dict[str, np.ndarray]) -> TrackState:
+        """The state that `TrackState.to_arrays` saved."""
+        kind = METHODS[self.config.method].State
+        own = {name.removeprefix("filter_"): value for name, value in arrays.items() if name.startswith("filter_")}
+        return TrackState(kind(**own), arrays["usual_costs"], int(arrays["troubled"]), int(arrays["seen"]))
+
+    def predict(self, state: TrackState) -> np.ndarray:
+        """(J, 3) metres: where the joints are expected in the next frame."""
+        return self.model.body.joints(self._predicted(state))
+
+    def step(self, rng: np.random.Generator, state: TrackState, masks: Sequence[np.ndarray]) -> tuple[TrackState, Estimate]:
+        """One frame from its masks, C times (H, W) bool."""
+        return self.step_observed(rng, state, self.model.observe(masks))
+
+    def step_observed(self, rng: np.random.Generator, state: TrackState, observation: Observation) -> tuple[TrackState, Estimate]:
+        """One frame from its evidence."""
+        seeing = observation.areas >= MINIMUM_AREA
+        if not seeing.any():
+            return self._unseen(state)
+        observation = replace(observation, model=self.weighted(state, seeing))
+        method = METHODS[self.config.method]
+        following, info = method.step(rng, state.filter, observation, self.dynamics, self.filter_config)
+        if info.collapsed:
+            return self._unseen(state, info)
+        costs = observation.costs(following.estimate)[0]
+        doubted = self._doubted(state, costs[seeing], seeing)
+        troubled = state.troubled + 1 if doubted else 0
+        status = TRACKED if not doubted else LOST if troubled > self.config.patience else DOUBTFUL
+        usual = state.usual_costs if doubted else _running_mean(state.usual_costs, costs, state.seen)
+        body = self.model.body
+        joints = body.joints(following.particles)
+        sd = _joint_sd(joints, Weights(following.log_weights))
+        estimate = Estimate(following.estimate, body.joints(following.estimate), sd, costs, status, info)
+        return TrackState(following, usual, troubled, state.seen + (not doubted)), estimate
+
+    def weighted(self, state: TrackState, seeing: np.ndarray) -> ImageLikelihood:
+        """The model with cameras weighted by how well they usually agree, and blind ones left out."""
+        usual = np.where(np.isfinite(state.usual_costs), state.usual_costs, 0.15)
+        weights = np.where(seeing, 1.0 / (usual + self.config.trust), 0.0)
+        return replace(self.model, weights=tuple(weights))
+
+    def _predicted(self, state: TrackState) -> np.ndarray:
+        ahead = state.filter.estimate + self.config.velocity_gain * state.filter.velocity
+        return np.clip(ahead, self.dynamics.lower, self.dynamics.upper)
+
+    def _doubted(self, state: TrackState, costs: np.ndarray, seeing: np.ndarray) -> bool:
+        usual = state.usual_costs[seeing]
+        ceiling = self.config.doubtful_cost
+        if state.seen >= 5 and np.isfinite(usual).all():
+            ceiling = min(ceiling, max(0.2, self.config.doubtful_ratio * float(usual.mean())))
+        return float(costs.mean()) > ceiling
+
+    def _unseen(self, state: TrackState, info: Info | None = None) -> tuple[TrackState, Estimate]:
+        """No evidence: stay where the person was last seen, and be less sure with every frame."""
+        troubled = state.troubled + 1
+        pose = state.filter.estimate
+        standing = replace(state.filter, velocity=np.zeros_like(pose))
+        body = self.model.body
+        joints = body.joints(pose)
+        known = _joint_sd(body.joints(state.filter.particles), Weights(state.filter.log_weights))
+        drift = self.config.root_speed * self.interval * np.sqrt(troubled) * 2.0
+        status = LOST if troubled > self.config.patience else UNSEEN
+        costs = np.full(len(self.model.rig), np.nan)
+        estimate = Estimate(pose, joints, np.hypot(known, drift), costs, status, info)
+        return replace(state, filter=standing, troubled=troubled), estimate
+
+
+MINIMUM_AREA = 20  # reduced pixels; a mask with fewer shows nobody
+
+
+def _running_mean(usual: np.ndarray, costs: np.ndarray, count: int) -> np.ndarray:
+    """Mean of the first twenty frames, then a slow average."""
+    rate = 1.0 / min(count + 1, 20)
+    return np.where(np.isfinite(usual), usual + rate * (costs - usual), costs)
+
+
+def _joint_sd(joints: np.ndarray, weights: Weights) -> np.ndarray:
+    """(J,) metres: root mean square over the axes of the particles' (N, J, 3) standard deviation."""
+    share = np.exp(weights.log)
+    mean = np.einsum("n,nja->ja", share, joints)
+    variance = np.einsum("n,nja->ja", share, (joints - mean) ** 2)
+    return np.sqrt(variance.mean(axis=1))
