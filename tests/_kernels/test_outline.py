@@ -54,7 +54,7 @@ def _distance_to_span(corners, left, right, y):
 def test_vector_spans_are_the_rows_spans():
     body, pose = standing()
     view = rows(camera(0.3))[0]
-    first, last = np.zeros(74, np.int64), np.zeros(74, np.int64)
+    first, last = np.zeros(96, np.int64), np.zeros(96, np.int64)
     for p in random_poses(np.random.default_rng(3), pose, count(12), 0.4, 0.6):
         for outline in outlines(p, body.arrays, view):
             if outline[KIND] == 0:

@@ -96,7 +96,7 @@ def start_pixel(canvas, top, bottom):
 def trace_border(canvas, x, y, xs, ys):
     """Follow the outer border from its start pixel, clockwise on the screen; returns its length and twice its signed area.
 
-    canvas (words, H + 2) uint64 with empty spare rows; xs, ys int32 take the pixels. Stops when one place is left.
+    canvas (words, rows) uint64 with empty spare rows; xs, ys int32 take the pixels. Stops when one place is left.
     """
     limit, rows = xs.shape[0] - 1, canvas.shape[1]
     flat = canvas.reshape(canvas.shape[0] * rows)

@@ -1,8 +1,8 @@
 """Outlines to spans, spans to bits: the two inner loops, written so that the compiler turns them into vector code.
 
-A canvas is (words, rows) uint64, the transpose of a packed mask: one word column of a segment is a contiguous run of rows, so
-a row costs a lane and not a loop. Canvases have one spare row above and below the picture (row y lies at y + 1), which the
-border's tracing reads.
+A canvas is (words, canvas_rows(H)) uint64, the transpose of a packed mask: one word column of a segment is a contiguous run of rows, so
+a row costs a lane and not a loop. A canvas has one spare row above the picture (row y lies at y + 1) and some below, which the
+border's tracing reads and which let every loop run over whole vectors; they stay empty.
 """
 
 from __future__ import annotations
@@ -16,13 +16,16 @@ from muybridge._kernels.outline import BOTTOM, END, KIND, SIDE, TOP
 
 _0, _1, _ONES = np.uint64(0), np.uint64(1), np.uint64(0xFFFFFFFFFFFFFFFF)
 FAR = 1e6  # pixels; farther than any picture is wide
+VECTOR = 8  # rows that the compiler takes at once; a remainder would be done one by one
+BLOCK = 32  # rows counted at once
 
 
 @kernel
 def outline_spans(out, width, height, first, last):
     """Spans of one outline: `first` and `last` (rows,) int64 from its top row on, first > last where a row is empty.
 
-    Returns the top row, the number of rows, and the range of words touched [word, end).
+    Returns the top row, the number of rows (a multiple of VECTOR: some may lie below the outline or the picture, and are
+    empty), and the range of words touched [word, end).
     """
     if out[KIND] == 0.0:
         return 0, 0, 0, 0
@@ -39,8 +42,9 @@ def outline_spans(out, width, height, first, last):
     flat_a, flat_b = 1.0 / out[END + 4], 1.0 / out[END + 10]
     px, py, slope_p, low_p, high_p = _side(out, SIDE)
     qx, qy, slope_q, low_q, high_q = _side(out, SIDE + 6)
-    widest = width - 1.0
-    for i in range(bottom - top + 1):
+    widest, lowest = width - 1.0, float(bottom)
+    rows = (bottom - top + VECTOR) // VECTOR * VECTOR
+    for i in range(rows):
         y = float(top + i)
         da, db = y - ay, y - by
         rest_a, rest_b = 1.0 - da * da * flat_a, 1.0 - db * db * flat_b
@@ -54,9 +58,10 @@ def outline_spans(out, width, height, first, last):
         on_p, on_q = (low_p <= y) & (y < high_p), (low_q <= y) & (y < high_q)
         left = min(left, p if on_p else FAR, q if on_q else FAR)
         right = max(right, p if on_p else -FAR, q if on_q else -FAR)
+        right = right if y <= lowest else -FAR
         first[i] = np.int64(math.ceil(max(0.0, left)))
         last[i] = np.int64(math.floor(min(widest, max(right, -1.0))))
-    return top, bottom - top + 1, int(leftmost) >> 6, (int(rightmost) >> 6) + 1
+    return top, rows, int(leftmost) >> 6, (int(rightmost) >> 6) + 1
 
 
 @kernel
@@ -95,7 +100,7 @@ def fill_word_seen(first, last, rows, offset, column, seen):
 
 @kernel
 def draw_outline(out, width, height, canvas, first, last):
-    """Set the outline's pixels in `canvas` (words, H + 2); returns rows [top, end) and words [word, end) touched."""
+    """Set the outline's pixels in `canvas` (words, rows); returns rows [top, end) and words [word, end) touched."""
     top, rows, word, end = outline_spans(out, width, height, first, last)
     if rows > 0:
         for w in range(word, end):
@@ -103,9 +108,14 @@ def draw_outline(out, width, height, canvas, first, last):
     return top, top + rows, word, end
 
 
+def canvas_rows(height: int) -> int:
+    """Rows of a canvas for a picture of `height` rows: one above, at least one and a vector below, a multiple of BLOCK."""
+    return -(-(height + 1 + VECTOR) // BLOCK) * BLOCK
+
+
 def transpose_rows(bits: np.ndarray) -> np.ndarray:
-    """Packed masks (C, H, words) uint64 -> (C, words, H + 2) as the canvases are laid out, spare rows empty."""
+    """Packed masks (C, H, words) uint64 -> (C, words, canvas_rows(H)) as the canvases are laid out, spare rows empty."""
     cameras, height, words = bits.shape
-    out = np.zeros((cameras, words, height + 2), np.uint64)
-    out[:, :, 1:-1] = bits.transpose(0, 2, 1)
+    out = np.zeros((cameras, words, canvas_rows(height)), np.uint64)
+    out[:, :, 1 : height + 1] = bits.transpose(0, 2, 1)
     return out

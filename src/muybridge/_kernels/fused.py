@@ -23,7 +23,7 @@ from muybridge._kernels.colour import LANES, add_seen, colour_distance
 from muybridge._kernels.draw import fill_word, fill_word_seen, outline_spans
 from muybridge._kernels.edges import outline_edges
 from muybridge._kernels.outline import END, KIND, OUTLINE_COLUMNS, outlines_of
-from muybridge._kernels.silhouette import CHUNK, count_inside
+from muybridge._kernels.silhouette import CHUNK, count_inside, whole_blocks
 
 #: Columns of a result: pixels of the model, of these inside the mask, colour distance D (5.5), distance of Fourier
 #: descriptors in pixels, edge points seen, their summed cost.
@@ -97,9 +97,10 @@ def _one_view(camera, outlines, order, wanted, mask, table, roots, known, by_are
     out[EDGE_POINTS], out[EDGE_COST], out[COLOUR], out[BOUNDARY] = points, cost, 0.0, 0.0
     if wanted & WANT_COLOUR:
         out[COLOUR] = colour_distance(histograms, roots, known, by_area)
+    low, high = whole_blocks(top, bottom, canvas.shape[1])
     model = inside = 0
     for w in range(word, end):
-        m, i = count_inside(canvas[w, top + 1 : bottom + 1], mask[w, top + 1 : bottom + 1])
+        m, i = count_inside(canvas[w, low:high], mask[w, low:high])
         model += m
         inside += i
     out[MODEL], out[INSIDE] = model, inside
@@ -108,7 +109,7 @@ def _one_view(camera, outlines, order, wanted, mask, table, roots, known, by_are
         if boundary_of(canvas, top, bottom, model, spare, xs, ys, square) > 0:
             out[BOUNDARY] = descriptor_distance(square[0], square[1], descriptor[0], descriptor[1], coefficients)
     for w in range(word, end):
-        canvas[w, top + 1 : bottom + 1] = 0
+        canvas[w, low:high] = 0
 
 
 @parallel_kernel
@@ -116,7 +117,7 @@ def measure(poses, parent, fixed, axis, dof, shaped, ends, half_axes, cameras, w
             descriptors, coefficients, edge_maps, out, histograms_out):
     """Fill out (N, C, RESULT_COLUMNS) for poses (N, D).
 
-    masks (C, words, H + 2) uint64; tables (C, H, W + 1, LANES / 4) uint64 (uint16 taken four at a time), roots (C, K, LANES) float32, known (C, K) bool for
+    masks (C, words, canvas_rows(H)) uint64; tables (C, H, W + 1, LANES / 4) uint64 (uint16 taken four at a time), roots (C, K, LANES) float32, known (C, K) bool for
     colour; descriptors (C, 2, SIDE, SIDE) float64 for the boundary; edge_maps (C, H, W) float32. What is not wanted may have
     any size with the same number of cameras. histograms_out (N, C, K, LANES) int32 takes the counts unless it is empty.
     """
@@ -142,7 +143,7 @@ def measure(poses, parent, fixed, axis, dof, shaped, ends, half_axes, cameras, w
 
 @kernel
 def describe_masks(masks, descriptors):
-    """Fill descriptors (C, 2, SIDE, SIDE) of masks (C, words, H + 2) uint64; returns the borders' lengths (C,), 0 if empty."""
+    """Fill descriptors (C, 2, SIDE, SIDE) of masks (C, words, canvas_rows(H)) uint64; returns the borders' lengths (C,), 0 if empty."""
     lengths = np.zeros(masks.shape[0], np.int64)
     longest = masks.shape[1] * 64 * masks.shape[2]
     xs, ys, square = np.empty(longest, np.int32), np.empty(longest, np.int32), np.empty((4, SIDE, SIDE))

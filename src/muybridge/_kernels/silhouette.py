@@ -11,11 +11,17 @@ import numpy as np
 from muybridge._kernels._jit import kernel, parallel_kernel
 from muybridge._kernels.bits import popcount
 from muybridge._kernels.chain import one_chain
-from muybridge._kernels.draw import draw_outline, transpose_rows
+from muybridge._kernels.draw import BLOCK, draw_outline, transpose_rows
 from muybridge._kernels.outline import OUTLINE_COLUMNS, outlines_of
 
 CHUNK = 16  # particles a thread takes at a time
 _0 = np.uint64(0)
+
+
+@kernel
+def whole_blocks(top, bottom, rows):
+    """Rows of a canvas, in whole blocks, that hold the picture's rows [top, bottom); none where there are none."""
+    return ((top + 1) // BLOCK * BLOCK, min(rows, (bottom + BLOCK) // BLOCK * BLOCK)) if top < bottom else (0, 0)
 
 
 @kernel
@@ -53,9 +59,10 @@ def _one_particle(pose, parent, fixed, axis, dof, shaped, ends, half_axes, camer
             t, b, w, e = draw_outline(outlines[k], width, height, canvas, first, last)
             if t < b:
                 top, bottom, word, end = min(top, t), max(bottom, b), min(word, w), max(end, e)
+        top, bottom = whole_blocks(top, bottom, canvas.shape[1])
         model = inside = 0
         for w in range(word, end):
-            m, i = count_and_clear(canvas[w, top + 1 : bottom + 1], masks[c, w, top + 1 : bottom + 1])
+            m, i = count_and_clear(canvas[w, top:bottom], masks[c, w, top:bottom])
             model += m
             inside += i
         out[c, 0], out[c, 1] = model, inside

@@ -9,6 +9,7 @@ import numpy as np
 from muybridge._kernels import fused
 from muybridge._kernels.boundary import SIDE
 from muybridge._kernels.colour import LANES
+from muybridge._kernels.draw import canvas_rows
 from muybridge.body.model import BodyArrays
 from muybridge.errors import InputError
 
@@ -40,7 +41,7 @@ def measure_cues(poses: np.ndarray, arrays: BodyArrays, cameras: np.ndarray, siz
 
     size : (int, int), pixels
         Width and height of the canvas: no camera's picture is larger.
-    masks : (C, words, H + 2) uint64
+    masks : (C, words, canvas_rows(H)) uint64
     """
     return _run(poses, arrays, cameras, size, masks, colour, boundary, edge_maps, False)[0]
 
@@ -58,7 +59,7 @@ def _run(poses, arrays, cameras, size, masks, colour, boundary, edge_maps, keep_
     count, shapes = cameras.shape[0], arrays.shaped.shape[0]
     wanted = (fused.WANT_COLOUR * (colour is not None) | fused.WANT_BOUNDARY * (boundary is not None)
               | fused.WANT_EDGES * (edge_maps is not None))
-    masks = np.zeros((count, -(-size[0] // 64), size[1] + 2), np.uint64) if masks is None else masks
+    masks = np.zeros((count, -(-size[0] // 64), canvas_rows(size[1])), np.uint64) if masks is None else masks
     nothing = np.zeros((count, 1, LANES), np.float32)
     colour = colour or ColourInput(np.zeros((count, 1, 1, LANES), np.uint16), nothing, np.zeros((count, 1), bool), True)
     boundary = boundary or BoundaryInput(np.zeros((count, 2, SIDE, SIDE)), 0)

@@ -76,7 +76,7 @@ class SilhouetteCue:
 
     @cached_property
     def masks(self) -> np.ndarray:
-        """(C, words, H + 2) uint64, as the fused kernel reads them."""
+        """(C, words, canvas_rows(H)) uint64, as the fused kernel reads them."""
         return transpose_rows(self.bits)
 
     def log_prob(self, poses: np.ndarray) -> np.ndarray:
