@@ -12,7 +12,7 @@ from muybridge.errors import InputError
 if TYPE_CHECKING:
     from muybridge.body import Body
     from muybridge.cameras import Rig
-    from muybridge.io.job import Job
+    from muybridge.io.job import Job, ReferenceInput
 
 CAMERAS_FILE, BODY_FILE = "cameras.json", "body.toml"
 """In the run folder: the cameras and the body as tracking used them in the end, corrected and fitted."""
@@ -46,13 +46,21 @@ def _frames_to_draw(job: Job, count: int) -> int:
     return count if job.frames is None else min(count, job.frames[1] + 1) - job.frames[0]
 
 
-def compare(out: Path, truth: Path | None, reporting: Reporting) -> dict[str, Any]:
-    """Write the report and plots; say how far off the run is where there is a truth, and return that for --json."""
+def check_reference(reference: ReferenceInput | None) -> None:
+    """Read the reference once before the run: after it would be late to find out that there is none."""
+    from muybridge.evaluation import read_truth
+
+    if reference is not None:
+        read_truth(reference.file, axes=reference.axes)
+
+
+def compare(out: Path, reference: ReferenceInput | None, reporting: Reporting) -> dict[str, Any]:
+    """Write the report and plots; say how far off the run is where there is a reference, and return that for --json."""
     from muybridge.report.content import gather
     from muybridge.report.plots import write_plots
     from muybridge.report.write import REPORT_FILE, render
 
-    content = gather(out, truth)
+    content = gather(out, reference.file, axes=reference.axes) if reference else gather(out)
     (out / REPORT_FILE).write_text(render(content), encoding="utf-8")
     write_plots(out, content)
     errors = content.errors

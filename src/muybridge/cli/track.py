@@ -54,15 +54,16 @@ def track(
 
 def run_and_tell(job: Job, out: Path, reporting: Reporting, *, resume: bool = False, overlay: bool = True) -> int:
     """Track, and say what came of it; LOST where the person was lost for good."""
-    from muybridge.cli.aftermath import compare, write_overlays
+    from muybridge.cli.aftermath import check_reference, compare, write_overlays
     from muybridge.tracking import run
 
+    check_reference(job.reference)
     try:
         with reporting.progress(job.name) as progress:
             summary = run(job, out, progress, resume=resume)
         reporting.say(f"{summary.frames} frames, {summary.status}")
         overlays = write_overlays(job, out, reporting) if overlay else []
-        comparison = compare(out, job.reference.file if job.reference else None, reporting)
+        comparison = compare(out, job.reference, reporting)
     except KeyboardInterrupt:
         raise KeyboardInterrupt(f"interrupted; what was finished is kept in {out}") from None
     reporting.say(f"results in {out}")

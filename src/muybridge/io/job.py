@@ -135,7 +135,8 @@ class ReferenceInput(Table, frozen=True):
     """`[reference]`: another measurement of the same motion, to start from or to compare with."""
 
     file: Path
-    unit: Unit | None = None
+    axes: str | None = None
+    """The world axis of a .trc file's X, Y and Z, such as "yzx"; found from heads and feet where absent."""
 
 
 class Job(Table, frozen=True):

@@ -60,7 +60,7 @@ def _from_reference(job: Job, body: Body, frame: int) -> np.ndarray:
     from muybridge.evaluation import read_truth
 
     assert job.reference is not None
-    series = read_truth(job.reference.file)
+    series = read_truth(job.reference.file, axes=job.reference.axes)
     rows = np.flatnonzero(series.frames == frame)
     if not len(rows):
         raise InputError(f"reference {job.reference.file}", expected=f"frame {frame}", got="no such frame")
