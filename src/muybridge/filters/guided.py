@@ -23,7 +23,12 @@ Each step of the climb solves (H_L + Lambda) d = g + Lambda (x^- - x) and goes f
 the next frame's P, is (H_L / (kappa v) + Lambda)^-1: v is the residuals' variance relative to the one assumed, found in each frame, and kappa the
 number of neighbouring residuals that err together.
 
-Cost: `len(spreads)` looks at the contour and N likelihood evaluations a frame; N = 0 reports the mode and its curvature.
+A climb finds the nearest mode, and a limb that left the picture's outline (an arm that crossed the trunk) may be found by no
+climb again. So in every frame one block of components, a limb, is also drawn anew all over its range; the draws that the
+likelihood likes best are climbed from, and taken if that explains the picture better by `margin` in log likelihood.
+
+Cost: `len(spreads)` looks at the contour and N likelihood evaluations a frame; with blocks, `redraws` evaluations and about
+twice the looks more.
 """
 
 from __future__ import annotations
@@ -85,6 +90,10 @@ class Config(CommonConfig):
     estimate: Literal["mean", "maximum"] = "mean"
     spreads: tuple[float, ...] = (0.2, 0.13, 0.085, 0.06, 0.045, 0.035, 0.03, 0.025)  # metres, one a step, falling
     dependence: float = 7.0  # kappa; makes the 95 % regions hold on rendered scenes, see docs/benchmarks.md
+    blocks: tuple[tuple[int, ...], ...] = ()  # components that are drawn anew together, a block a frame; empty: never
+    redraws: int = 100  # likelihood evaluations spent on that
+    tries: int = 2  # of the best redraws, so many are climbed from
+    margin: float = 3.0  # log likelihood by which a redrawn limb must be better
     weighting: Literal["laplace", "likelihood", "importance"] = "laplace"  # equal | p(y|x) | p(y|x) p(x) / proposal
 
     def __post_init__(self) -> None:
@@ -129,6 +138,7 @@ def step(
     prediction = dynamics.sample(rng, state.estimate[None], state.velocity, 0.0)[0]
     prior = _prior_precision(state.covariance, dynamics)
     mode, seen = climb(prediction, prior, likelihood, dynamics, config)
+    start, mode, seen = _redraw_limb(rng, prediction, mode, seen, prior, counted, likelihood, dynamics, config)
     precision = seen.curvature / (config.dependence * seen.noise) + prior
     covariance = np.linalg.inv(precision)
     standard = rng.standard_normal((config.particles, mode.size))
@@ -142,7 +152,10 @@ def step(
     population = Population(particles, log_likelihoods)
     following, info = conclude(state, particles, population, log_weights, counted, config, layers)
     if config.weighting == "laplace" and not info.collapsed:  # equal weights: their mean is the mode plus noise
-        following = replace(following, estimate=mode, velocity=mode - state.estimate)
+        following = replace(following, estimate=mode)
+    # A redrawn limb did not travel: what it jumped is no velocity.
+    velocity = following.estimate - state.estimate - (start - prediction)
+    following = following if info.collapsed else replace(following, velocity=velocity)
     return following if info.collapsed else replace(following, covariance=covariance), info
 
 
@@ -157,6 +170,35 @@ def climb(
         change *= min(1.0, LARGEST_TURN / max(1e-12, float(np.abs(change).max())))
         mode = np.clip(mode + change, dynamics.lower, dynamics.upper)
     return mode, seen
+
+
+def _redraw_limb(
+    rng: np.random.Generator,
+    prediction: FloatArray,
+    mode: FloatArray,
+    seen: Linearised,
+    prior: FloatArray,
+    counted: CountingLikelihood,
+    likelihood: GuidingLikelihood,
+    dynamics: Dynamics,
+    config: Config,
+) -> tuple[FloatArray, FloatArray, Linearised]:
+    """Draw one block anew; the start (D,) and the mode (D,) that explain the picture best, and the curvature there."""
+    if not config.blocks or config.redraws < 1:
+        return prediction, mode, seen
+    block = np.array(config.blocks[int(rng.integers(len(config.blocks)))])
+    low, high = np.maximum(dynamics.lower[block], -np.pi), np.minimum(dynamics.upper[block], np.pi)
+    drawn = np.repeat(mode[None], config.redraws, axis=0)
+    drawn[:, block] = rng.uniform(low, high, (config.redraws, block.size))
+    here = float(counted.log_prob(mode[None])[0])
+    best = np.argsort(-counted.log_prob(drawn), kind="stable")[: config.tries]
+    start = prediction
+    for candidate in drawn[best]:
+        climbed, other = climb(candidate, prior, likelihood, dynamics, config)
+        there = float(counted.log_prob(climbed[None])[0])
+        if config.sharpness * (there - here) > config.margin:
+            start, mode, seen, here = candidate, climbed, other, there
+    return start, mode, seen
 
 
 def _prior_precision(covariance: FloatArray, dynamics: Dynamics) -> FloatArray:

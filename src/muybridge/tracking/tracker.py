@@ -95,7 +95,11 @@ class Tracker:
 
     @cached_property
     def filter_config(self) -> Any:
-        return self.config.filter or METHODS[self.config.method].WORKING
+        config = self.config.filter or METHODS[self.config.method].WORKING
+        if self.config.method == "guided" and not config.blocks:
+            limbs = [indices for name, indices in self.model.body.blocks.items() if name != "root"]
+            config = replace(config, blocks=tuple(tuple(indices.tolist()) for indices in limbs))
+        return config
 
     def init(self, rng: np.random.Generator, pose: np.ndarray) -> TrackState:
         """A state that believes in one pose (D,)."""
