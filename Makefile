@@ -4,6 +4,10 @@ VENV ?= .venv
 SEED ?= 1
 OUT ?= runs
 
+# A reference of the real recording (a .trc file), where you have one: make demo-real REFERENCE=markers.trc
+REFERENCE ?=
+COMPARE = $(if $(REFERENCE),--set reference.file=$(abspath $(REFERENCE)))
+
 BIN := $(VENV)/bin
 READY := $(VENV)/.ready
 # Threads inside BLAS only get in the way of those over particles. Compiled kernels are kept beside their sources.
@@ -24,7 +28,7 @@ demo: $(READY)
 
 demo-real: $(READY)
 	$(BIN)/muybridge sample beam --out samples/beam
-	$(BIN)/muybridge track samples/beam/JOB.toml --out $(OUT)/beam --seed $(SEED)
+	$(BIN)/muybridge track samples/beam/JOB.toml --out $(OUT)/beam --seed $(SEED) $(COMPARE)
 
 test: lint layers
 	$(BIN)/python -m pytest

@@ -59,7 +59,7 @@ def run_and_tell(job: Job, out: Path, reporting: Reporting, *, resume: bool = Fa
 
     check_reference(job.reference)
     try:
-        with reporting.progress(job.name) as progress:
+        with reporting.progress(f"track {job.name}") as progress:
             summary = run(job, out, progress, resume=resume)
         reporting.say(f"{summary.frames} frames, {summary.status}")
         overlays = write_overlays(job, out, reporting) if overlay else []
