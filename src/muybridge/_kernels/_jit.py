@@ -15,3 +15,7 @@ FASTMATH = {"nsz", "arcp", "contract", "afn", "reassoc"}
 kernel = njit(cache=True, nogil=True, fastmath=FASTMATH, error_model="numpy")
 parallel_kernel = njit(cache=True, nogil=True, fastmath=FASTMATH, error_model="numpy", parallel=True)
 inline_kernel = njit(cache=True, nogil=True, fastmath=FASTMATH, error_model="numpy", inline="always")
+#: Inlined by the compiler itself, which lets loops around it become vector code.
+vector_kernel = njit(cache=True, nogil=True, fastmath=FASTMATH, error_model="numpy", forceinline=True)
+#: Without reordering, for code whose accuracy hangs on the order of its additions.
+exact_kernel = njit(cache=True, nogil=True, error_model="numpy")

@@ -10,29 +10,88 @@ import math
 
 import numpy as np
 
-from muybridge._kernels._jit import kernel
+from muybridge._kernels._jit import exact_kernel, kernel
+
+
+LANES = 16  # poses that are posed and projected together: two vectors of eight
+#: pi / 2 in three parts, the first two with 26 zero bits at their ends, so that multiples up to 2^26 are exact.
+_HALF_PI_1, _HALF_PI_2, _HALF_PI_3 = 1.57079625129699707031, 7.54978941586159635335e-08, 5.39030285815811905290e-15
+
+
+@exact_kernel
+def cosines_and_sines(angles, cosines, sines):
+    """Fill cosines and sines of angles (M,), radians, |angle| < 1e7: polynomials (Cephes) that the compiler can vectorise."""
+    for i in range(angles.shape[0]):
+        turns = math.floor(angles[i] * (2.0 / math.pi) + 0.5)
+        r = ((angles[i] - turns * _HALF_PI_1) - turns * _HALF_PI_2) - turns * _HALF_PI_3
+        z = r * r
+        p = ((((1.58962301576546568060e-10 * z - 2.50507477628578072866e-8) * z + 2.75573136213857245213e-6) * z
+              - 1.98412698295895385996e-4) * z + 8.33333333332211858878e-3) * z - 1.66666666666666307295e-1
+        q = ((((-1.13585365213876817300e-11 * z + 2.08757008419747316778e-9) * z - 2.75573141792967388112e-7) * z
+              + 2.48015872888517045348e-5) * z - 1.38888888888730564116e-3) * z + 4.16666666666665929218e-2
+        sine, cosine = r + r * z * p, 1.0 - 0.5 * z + z * z * q
+        quadrant = np.int64(turns) & 3
+        s = cosine if quadrant & 1 else sine
+        c = sine if quadrant & 1 else cosine
+        sines[i] = -s if quadrant & 2 else s
+        cosines[i] = -c if (quadrant + 1) & 2 else c
 
 
 @kernel
-def one_chain(pose, parent, fixed, axis, dof, frames):
-    """Fill `frames` (S, 3, 4) with every segment's rotation and origin in the world, for one pose (D,)."""
+def _row(flat, i):
+    return flat[i * LANES : (i + 1) * LANES]
+
+
+@kernel
+def load_lanes(poses, start, lanes, cosines, sines):
+    """Copy poses[start : start + LANES] into lanes (D, LANES), the last pose repeated where there are fewer, and turn them."""
+    for lane in range(LANES):
+        n = min(start + lane, poses.shape[0] - 1)
+        for d in range(poses.shape[1]):
+            lanes[d, lane] = poses[n, d]
+    size = lanes.shape[0] * LANES
+    cosines_and_sines(lanes.reshape(size), cosines.reshape(size), sines.reshape(size))
+
+
+@kernel
+def chain_lanes(poses, cosines, sines, parent, fixed, axis, dof, frames):
+    """Frames (S, 12 * LANES) of LANES poses (D, LANES) at once, with the cosines and sines (D, LANES) of their angles.
+
+    A frame's twelve rows are its (3, 4) matrix, rotation and origin; the poses are the lanes of the processor's vectors.
+    """
     for s in range(parent.shape[0]):
         p = parent[s]
-        if p < 0:
-            for i in range(3):
-                for j in range(4):
-                    frames[s, i, j] = fixed[s, i, j]
-                frames[s, i, 3] += pose[i]
-        else:
-            for i in range(3):
-                a, b, c = frames[p, i, 0], frames[p, i, 1], frames[p, i, 2]
-                for j in range(4):
-                    frames[s, i, j] = a * fixed[s, 0, j] + b * fixed[s, 1, j] + c * fixed[s, 2, j]
-                frames[s, i, 3] += frames[p, i, 3]
+        for i in range(3):
+            for j in range(4):
+                target = _row(frames[s], 4 * i + j)
+                if p < 0:
+                    for lane in range(LANES):
+                        target[lane] = fixed[s, i, j]
+                else:
+                    f0, f1, f2, f3 = fixed[s, 0, j], fixed[s, 1, j], fixed[s, 2, j], 1.0 if j == 3 else 0.0
+                    a, b, c, o = _row(frames[p], 4 * i), _row(frames[p], 4 * i + 1), _row(frames[p], 4 * i + 2), _row(frames[p], 4 * i + 3)
+                    for lane in range(LANES):
+                        target[lane] = a[lane] * f0 + b[lane] * f1 + c[lane] * f2 + o[lane] * f3
+            if p < 0:
+                target, place = _row(frames[s], 4 * i + 3), poses[i]
+                for lane in range(LANES):
+                    target[lane] += place[lane]
         for k in range(3):
-            code = axis[s, k]
-            if code != 0:
-                turn_columns(frames[s], code, pose[dof[s, k]])
+            if axis[s, k] != 0:
+                _turn_lanes(frames[s], axis[s, k], cosines[dof[s, k]], sines[dof[s, k]])
+
+
+@kernel
+def _turn_lanes(frame, code, cosines, sines):
+    """As `turn_columns`, for a frame (12 * LANES,)."""
+    sign = 1.0 if code > 0 else -1.0
+    i, j = abs(code) % 3, (abs(code) + 1) % 3
+    for row in range(3):
+        u, v = _row(frame, 4 * row + i), _row(frame, 4 * row + j)
+        for lane in range(LANES):
+            a, b, cosine, sine = u[lane], v[lane], cosines[lane], sign * sines[lane]
+            u[lane] = cosine * a + sine * b
+            v[lane] = cosine * b - sine * a
 
 
 @kernel
@@ -51,9 +110,16 @@ def turn_columns(frame, code, angle):
 @kernel
 def segment_frames(poses, parent, fixed, axis, dof):
     """Frames (N, S, 3, 4) of poses (N, D)."""
-    out = np.empty((poses.shape[0], parent.shape[0], 3, 4))
-    for n in range(poses.shape[0]):
-        one_chain(poses[n], parent, fixed, axis, dof, out[n])
+    segments, shape = parent.shape[0], (poses.shape[1], LANES)
+    out = np.empty((poses.shape[0], segments, 3, 4))
+    lanes, cosines, sines, frames = np.empty(shape), np.empty(shape), np.empty(shape), np.empty((segments, 12 * LANES))
+    for start in range(0, poses.shape[0], LANES):
+        load_lanes(poses, start, lanes, cosines, sines)
+        chain_lanes(lanes, cosines, sines, parent, fixed, axis, dof, frames)
+        for n in range(start, min(start + LANES, poses.shape[0])):
+            for s in range(segments):
+                for i in range(12):
+                    out[n, s, i // 4, i % 4] = frames[s, i * LANES + n - start]
     return out
 
 

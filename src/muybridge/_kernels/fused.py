@@ -1,6 +1,6 @@
 """All cues of many poses in one pass: every segment is projected and drawn once, front to back.
 
-Three floors: `measure` -> `_over_particles` (parallel) -> `_one_particle` -> `_one_view` -> the cues' own kernels.
+Floors: `measure` (parallel; chain and outlines of LANES poses at once) -> `_one_view` -> the cues' own kernels.
 A cue that is not wanted costs nothing. Cost with silhouette, colour and boundary: see `bench`.
 """
 
@@ -18,12 +18,13 @@ from muybridge._kernels.boundary import (
     resample_closed,
     trace_largest,
 )
-from muybridge._kernels.chain import one_chain
-from muybridge._kernels.colour import LANES, add_seen, colour_distance
+from muybridge._kernels.chain import LANES, chain_lanes, load_lanes
+from muybridge._kernels.colour import LANES as COLOUR_LANES
+from muybridge._kernels.colour import add_seen, colour_distance
 from muybridge._kernels.draw import fill_word, fill_word_seen, outline_spans
 from muybridge._kernels.edges import outline_edges
-from muybridge._kernels.outline import END, KIND, OUTLINE_COLUMNS, outlines_of
-from muybridge._kernels.silhouette import CHUNK, count_inside, whole_blocks
+from muybridge._kernels.outline import END, KIND, OUTLINE_COLUMNS, outlines_lanes, take_lane
+from muybridge._kernels.silhouette import count_inside, whole_blocks
 
 #: Columns of a result: pixels of the model, of these inside the mask, colour distance D (5.5), distance of Fourier
 #: descriptors in pixels, edge points seen, their summed cost.
@@ -121,20 +122,25 @@ def measure(poses, parent, fixed, axis, dof, shaped, ends, half_axes, cameras, w
     colour; descriptors (C, 2, SIDE, SIDE) float64 for the boundary; edge_maps (C, H, W) float32. What is not wanted may have
     any size with the same number of cameras. histograms_out (N, C, K, LANES) int32 takes the counts unless it is empty.
     """
-    count, views, rows, shapes = poses.shape[0], cameras.shape[0], masks.shape[2], shaped.shape[0]
-    for chunk in numba.prange((count + CHUNK - 1) // CHUNK):
-        frames = np.empty((parent.shape[0], 3, 4))
+    count, rows, shapes = poses.shape[0], masks.shape[2], shaped.shape[0]
+    for chunk in numba.prange((count + LANES - 1) // LANES):
+        shape = (poses.shape[1], LANES)
+        lanes, cosines, sines, frames = np.empty(shape), np.empty(shape), np.empty(shape), np.empty((parent.shape[0], 12 * LANES))
+        kinds, ellipses, sides = np.empty((shapes, LANES)), np.empty((shapes, 12 * LANES)), np.empty((shapes, 14 * LANES))
         outlines, order = np.empty((shapes, OUTLINE_COLUMNS)), np.empty(shapes, np.int64)
         canvas = np.zeros((masks.shape[1], rows), np.uint64)
         spare = np.empty(canvas.shape, np.uint64)
         first, last, seen = np.empty(rows, np.int64), np.empty(rows, np.int64), np.empty(rows, np.uint64)
-        histograms = np.zeros((shapes, LANES), np.int32)
+        histograms = np.zeros((shapes, COLOUR_LANES), np.int32)
         longest = masks.shape[1] * 64 * rows if wanted & WANT_BOUNDARY else 2
         xs, ys, square = np.empty(longest, np.int32), np.empty(longest, np.int32), np.empty((4, SIDE, SIDE))
-        for n in range(chunk * CHUNK, min(count, (chunk + 1) * CHUNK)):
-            one_chain(poses[n], parent, fixed, axis, dof, frames)
-            for c in range(views):
-                outlines_of(cameras[c], frames, shaped, ends, half_axes, outlines)
+        start = chunk * LANES
+        load_lanes(poses, start, lanes, cosines, sines)
+        chain_lanes(lanes, cosines, sines, parent, fixed, axis, dof, frames)
+        for c in range(cameras.shape[0]):
+            outlines_lanes(cameras[c], frames, shaped, ends, half_axes, kinds, ellipses, sides)
+            for n in range(start, min(count, start + LANES)):
+                take_lane(kinds, ellipses, sides, n - start, outlines)
                 _one_view(cameras[c], outlines, order, wanted, masks[c], tables[c], roots[c], known[c], by_area, descriptors[c],
                           coefficients, edge_maps[c], canvas, spare, first, last, seen, histograms, xs, ys, square, out[n, c])
                 if histograms_out.shape[0] > 0:

@@ -1,6 +1,6 @@
 """Silhouettes of many poses, drawn as bits and counted against the observed mask (Du 2005, 5.2.1; Sedai 2013, IV-A).
 
-Three floors: `silhouette_counts` (parallel over chunks of particles) -> `_one_particle` -> `outline` and `draw`.
+Three floors: `silhouette_counts` -> `_over_particles` (parallel; chain and outlines of LANES poses at once) -> `_one_view`.
 """
 
 from __future__ import annotations
@@ -10,11 +10,10 @@ import numpy as np
 
 from muybridge._kernels._jit import kernel, parallel_kernel
 from muybridge._kernels.bits import popcount
-from muybridge._kernels.chain import one_chain
+from muybridge._kernels.chain import LANES, chain_lanes, load_lanes
 from muybridge._kernels.draw import BLOCK, draw_outline, transpose_rows
-from muybridge._kernels.outline import OUTLINE_COLUMNS, outlines_of
+from muybridge._kernels.outline import OUTLINE_COLUMNS, outlines_lanes, take_lane
 
-CHUNK = 16  # particles a thread takes at a time
 _0 = np.uint64(0)
 
 
@@ -47,39 +46,42 @@ def count_inside(column, mask):
 
 
 @kernel
-def _one_particle(pose, parent, fixed, axis, dof, shaped, ends, half_axes, cameras, masks, frames, outlines, canvas, first, last,
-                  out):
-    """Counts (C, 2) of one pose: pixels of the model, and of these the ones inside the mask."""
-    one_chain(pose, parent, fixed, axis, dof, frames)
-    for c in range(cameras.shape[0]):
-        width, height = int(cameras[c, 23]), int(cameras[c, 24])
-        outlines_of(cameras[c], frames, shaped, ends, half_axes, outlines)
-        top, bottom, word, end = height, 0, canvas.shape[0], 0
-        for k in range(shaped.shape[0]):
-            t, b, w, e = draw_outline(outlines[k], width, height, canvas, first, last)
-            if t < b:
-                top, bottom, word, end = min(top, t), max(bottom, b), min(word, w), max(end, e)
-        top, bottom = whole_blocks(top, bottom, canvas.shape[1])
-        model = inside = 0
-        for w in range(word, end):
-            m, i = count_and_clear(canvas[w, top:bottom], masks[c, w, top:bottom])
-            model += m
-            inside += i
-        out[c, 0], out[c, 1] = model, inside
+def _one_view(outlines, width, height, mask, canvas, first, last, out):
+    """Counts (2,) of outlines (K, OUTLINE_COLUMNS): pixels of the model, and of these the ones inside the mask."""
+    top, bottom, word, end = height, 0, canvas.shape[0], 0
+    for k in range(outlines.shape[0]):
+        t, b, w, e = draw_outline(outlines[k], width, height, canvas, first, last)
+        if t < b:
+            top, bottom, word, end = min(top, t), max(bottom, b), min(word, w), max(end, e)
+    top, bottom = whole_blocks(top, bottom, canvas.shape[1])
+    model = inside = 0
+    for w in range(word, end):
+        m, i = count_and_clear(canvas[w, top:bottom], mask[w, top:bottom])
+        model += m
+        inside += i
+    out[0], out[1] = model, inside
 
 
 @parallel_kernel
 def _over_particles(poses, parent, fixed, axis, dof, shaped, ends, half_axes, cameras, masks, out):
     """Fill out (N, C, 2); particles are independent, so that threads change nothing."""
-    count, rows = poses.shape[0], masks.shape[2]
-    for chunk in numba.prange((count + CHUNK - 1) // CHUNK):
-        frames = np.empty((parent.shape[0], 3, 4))
-        outlines = np.empty((shaped.shape[0], OUTLINE_COLUMNS))
+    count, rows, shapes = poses.shape[0], masks.shape[2], shaped.shape[0]
+    for chunk in numba.prange((count + LANES - 1) // LANES):
+        shape = (poses.shape[1], LANES)
+        lanes, cosines, sines, frames = np.empty(shape), np.empty(shape), np.empty(shape), np.empty((parent.shape[0], 12 * LANES))
+        kinds, ellipses, sides = np.empty((shapes, LANES)), np.empty((shapes, 12 * LANES)), np.empty((shapes, 14 * LANES))
+        outlines = np.empty((shapes, OUTLINE_COLUMNS))
         canvas = np.zeros((masks.shape[1], rows), np.uint64)
         first, last = np.empty(rows, np.int64), np.empty(rows, np.int64)
-        for n in range(chunk * CHUNK, min(count, (chunk + 1) * CHUNK)):
-            _one_particle(poses[n], parent, fixed, axis, dof, shaped, ends, half_axes, cameras, masks, frames, outlines, canvas,
-                          first, last, out[n])
+        start = chunk * LANES
+        load_lanes(poses, start, lanes, cosines, sines)
+        chain_lanes(lanes, cosines, sines, parent, fixed, axis, dof, frames)
+        for c in range(cameras.shape[0]):
+            width, height = int(cameras[c, 23]), int(cameras[c, 24])
+            outlines_lanes(cameras[c], frames, shaped, ends, half_axes, kinds, ellipses, sides)
+            for n in range(start, min(count, start + LANES)):
+                take_lane(kinds, ellipses, sides, n - start, outlines)
+                _one_view(outlines, width, height, masks[c], canvas, first, last, out[n, c])
 
 
 def silhouette_counts(poses, parent, fixed, axis, dof, shaped, ends, half_axes, cameras, bits):
