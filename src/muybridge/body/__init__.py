@@ -8,8 +8,23 @@ catalogue          the names there are
 =================  =====================================================
 """
 
-from muybridge.body.load import catalogue, dump_body, named_body, parse_body, read_body, write_body
-from muybridge.body.model import Body, BodyArrays, Landmark, Rotation, Segment, Shape
+from muybridge.body.arrays import BodyArrays
+from muybridge.body.load import catalogue, named_body, parse_body, read_body
+from muybridge.body.model import Body
+from muybridge.body.parts import Landmark, Rotation, Segment, Shape
+from muybridge.body.save import dump_body, write_body
 
-__all__ = ["Body", "BodyArrays", "Landmark", "Rotation", "Segment", "Shape", "catalogue", "dump_body", "named_body", "parse_body", "read_body",
-           "write_body"]
+__all__ = [
+    "Body",
+    "BodyArrays",
+    "Landmark",
+    "Rotation",
+    "Segment",
+    "Shape",
+    "catalogue",
+    "dump_body",
+    "named_body",
+    "parse_body",
+    "read_body",
+    "write_body",
+]
