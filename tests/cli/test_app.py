@@ -6,6 +6,7 @@ import json
 import os
 import subprocess
 import sys
+import warnings
 from pathlib import Path
 
 import pytest
@@ -45,6 +46,22 @@ class TestExitCodes:
         assert say(monkeypatch, fail) == code
         out, line = capfd.readouterr()
         assert out == "" and line.count("\n") == 1 and words in line
+
+    def test_warnings_are_a_line_each_once(self, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture) -> None:
+        def warn() -> None:
+            for _ in range(3):
+                warnings.warn("left.mp4: two frames\nare damaged", stacklevel=1)
+
+        assert say(monkeypatch, warn) == 0
+        assert capfd.readouterr().err == "muybridge: note: left.mp4: two frames are damaged\n"
+
+    def test_an_error_is_the_only_line(self, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture) -> None:
+        def fail() -> None:
+            warnings.warn("left.mp4: truncated", stacklevel=1)
+            raise InputError("left.mp4", expected="10 frames", got="1")
+
+        assert say(monkeypatch, fail) == 2
+        assert capfd.readouterr().err == "muybridge: left.mp4: expected 10 frames, got 1\n"
 
     def test_a_mistake_of_ours_is_not_hidden(self, monkeypatch: pytest.MonkeyPatch) -> None:
         with pytest.raises(ZeroDivisionError):

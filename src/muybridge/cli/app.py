@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
+import warnings
 
 from cyclopts import App, CycloptsError
 
@@ -41,6 +42,16 @@ def run(arguments: list[str]) -> int:
     """The exit code of the command; expected trouble becomes one line on stderr."""
     # Threads inside BLAS fight with those over particles; this must be set before numpy is imported.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("default")
+        code = _run(arguments)
+    if code in (DONE, LOST):  # else one line says what is wrong, and no other may drown it
+        for message in dict.fromkeys(str(warning.message) for warning in caught):
+            _complain(f"note: {message}", code)
+    return code
+
+
+def _run(arguments: list[str]) -> int:
     try:
         code = build()(arguments, exit_on_error=False, print_error=False, result_action="return_value")
     except (MuybridgeError, CycloptsError) as error:
