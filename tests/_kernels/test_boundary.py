@@ -5,12 +5,12 @@ from __future__ import annotations
 import cv2
 import numpy as np
 import pytest
-from reference import boundary as slow
-from reference.scene import count
 
 from muybridge._kernels.bits import pack_rows
 from muybridge._kernels.boundary import SIDE, fourier_descriptor, start_pixel, trace_border
 from muybridge._kernels.draw import transpose_rows
+from reference import boundary as slow
+from reference.scene import count
 
 
 def _traced(mask):

@@ -1,14 +1,11 @@
-"""Every cue's kernel against its literal twin: random poses, at the picture's edge, behind the camera, nothing there."""
+"""Every cue's kernel against its literal twin: random poses, at the picture's edge, behind the camera, nothing
+there.
+"""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
-from reference import boundary as slow_boundary
-from reference import colour as slow_colour
-from reference import edges as slow_edges
-from reference.scene import camera, count, random_poses, rows, standing
-from reference.silhouette import model_mask
 
 from muybridge._kernels import fused
 from muybridge._kernels.bits import pack_rows
@@ -16,6 +13,11 @@ from muybridge._kernels.silhouette import silhouette_counts
 from muybridge.likelihood._measure import BoundaryInput, ColourInput, measure_cues
 from muybridge.likelihood.boundary import descriptors_of
 from muybridge.likelihood.colour import ColourReference, colour_tables
+from reference import boundary as slow_boundary
+from reference import colour as slow_colour
+from reference import edges as slow_edges
+from reference.scene import camera, count, random_poses, rows, standing
+from reference.silhouette import model_mask
 
 PLACES = {"middle": (0.0, 0.0), "edge": (0.0, 1.2), "corner": (0.9, 1.2), "outside": (0.0, 9.0), "behind": (9.0, 0.0)}
 
@@ -54,9 +56,12 @@ def test_colour_is_that_of_the_painted_picture(place, by_area):
     results = measure_cues(poses, body.arrays, view, (96, 72), colour=wanted)
     for n, pose in enumerate(poses):
         for c in range(2):
-            counts = slow_colour.histograms(slow_colour.label_image(pose, body.arrays, view[c]), images[c], histograms.shape[1])
+            counts = slow_colour.histograms(
+                slow_colour.label_image(pose, body.arrays, view[c]), images[c], histograms.shape[1]
+            )
             expected = slow_colour.distance(histograms[c], counts, by_area)
-            # the reference's roots are float32: 16 segments x 3 sums of 10 products, each sqrt doubles at most near 0.05
+            # the reference's roots are float32: 16 segments x 3 sums of 10 products, each sqrt doubles at most near
+            # 0.05
             assert results[n, c, fused.COLOUR] == pytest.approx(expected, abs=1e-5)
 
 
@@ -97,7 +102,9 @@ def test_all_at_once_is_each_alone_and_threads_change_nothing():
     rng = np.random.default_rng(8)
     histograms = rng.dirichlet(np.ones(10), (2, len(body.arrays.shaped), 3))
     reference = ColourReference(histograms, np.ones(histograms.shape[:2], bool))
-    colour = ColourInput(colour_tables([rng.integers(0, 256, (72, 96, 3), dtype=np.uint8)] * 2), reference.roots, reference.known, True)
+    colour = ColourInput(
+        colour_tables([rng.integers(0, 256, (72, 96, 3), dtype=np.uint8)] * 2), reference.roots, reference.known, True
+    )
     boundary = BoundaryInput(rng.normal(size=(2, 2, 16, 16)), 100)
     maps = rng.random((2, 72, 96)).astype(np.float32)
     cues = {"colour": colour, "boundary": boundary, "edge_maps": maps}

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from reference import chain as slow_chain
-from reference import outline as slow
-from reference.scene import WIDE, camera, count, random_poses, rows, standing
-from reference.silhouette import outlines
 
 from muybridge._kernels.chain import segment_frames
 from muybridge._kernels.draw import outline_spans
 from muybridge._kernels.outline import KIND, row_span
+from reference import chain as slow_chain
+from reference import outline as slow
+from reference.scene import WIDE, camera, count, random_poses, rows, standing
+from reference.silhouette import outlines
 
 
 @pytest.mark.parametrize("name", ["person", "bodytrack"])
@@ -41,11 +41,18 @@ def test_spans_are_the_sampled_hull_to_half_a_pixel(name, distortion):
 
 
 def _distance_to_span(corners, left, right, y):
-    """How far the two ends of a span lie from the polygon's outline (not along the row: a flat cap is nearly parallel to it)."""
+    """How far the two ends of a span lie from the polygon's outline (not along the row: a flat cap is nearly
+    parallel to it).
+    """
     a, b = corners, np.roll(corners, -1, axis=0)
     distances = []
     for x in (left, right):
-        along = np.clip(((x - a[:, 0]) * (b - a)[:, 0] + (y - a[:, 1]) * (b - a)[:, 1]) / np.maximum(1e-12, np.sum((b - a) ** 2, axis=1)), 0, 1)
+        along = np.clip(
+            ((x - a[:, 0]) * (b - a)[:, 0] + (y - a[:, 1]) * (b - a)[:, 1])
+            / np.maximum(1e-12, np.sum((b - a) ** 2, axis=1)),
+            0,
+            1,
+        )
         nearest = a + along[:, None] * (b - a)
         distances.append(np.min(np.hypot(nearest[:, 0] - x, nearest[:, 1] - y)))
     return max(distances)

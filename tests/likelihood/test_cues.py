@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from reference import silhouette as slow
-from reference.scene import camera, count, random_poses, rows, standing
 
 from muybridge._kernels.bits import pack_rows
 from muybridge.errors import InputError
@@ -22,13 +20,17 @@ from muybridge.likelihood.colour import (
 from muybridge.likelihood.edges import EdgeCue, edge_map, stack_maps
 from muybridge.likelihood.fusion import Fusion, fuse
 from muybridge.likelihood.silhouette import KINDS, SilhouetteCue
+from reference import silhouette as slow
+from reference.scene import camera, count, random_poses, rows, standing
 
 SIZE = (96, 72)
 
 
 @pytest.fixture(scope="module")
 def scene():
-    """A body at its true pose before two cameras, its masks, and pictures in which every segment has a colour of its own."""
+    """A body at its true pose before two cameras, its masks, and pictures in which every segment has a colour of
+    its own.
+    """
     from reference.colour import label_image
 
     body, pose = standing()
@@ -43,7 +45,9 @@ def scene():
 def _silhouette(scene, masks=None, **more):
     body, _, view, true_masks, _ = scene
     masks = true_masks if masks is None else masks
-    return SilhouetteCue(body.arrays, view, np.array([pack_rows(m) for m in masks]), np.array([m.sum() for m in masks]), **more)
+    return SilhouetteCue(
+        body.arrays, view, np.array([pack_rows(m) for m in masks]), np.array([m.sum() for m in masks]), **more
+    )
 
 
 def _colour(scene, **more):
@@ -90,8 +94,12 @@ class TestValues:
 
     def test_beta_and_rho_multiply(self, scene):
         poses = random_poses(np.random.default_rng(13), scene[1], 4)
-        np.testing.assert_allclose(_colour(scene, beta=3.0).log_prob(poses), 3.0 * _colour(scene, beta=1.0).log_prob(poses))
-        np.testing.assert_allclose(_boundary(scene, rho=0.02).log_prob(poses), 0.2 * _boundary(scene, rho=0.1).log_prob(poses))
+        np.testing.assert_allclose(
+            _colour(scene, beta=3.0).log_prob(poses), 3.0 * _colour(scene, beta=1.0).log_prob(poses)
+        )
+        np.testing.assert_allclose(
+            _boundary(scene, rho=0.02).log_prob(poses), 0.2 * _boundary(scene, rho=0.1).log_prob(poses)
+        )
 
     def test_colour_tells_apart_what_silhouettes_cannot(self, scene):
         """Turned by half a turn the silhouette is nearly the same, left and right are swapped."""
@@ -194,15 +202,22 @@ class TestPictures:
 
 
 class TestErrors:
-    @pytest.mark.parametrize("more", [{"kind": "other"}, {"weights": (1.0,)}, {"weights": (-1.0, 2.0)}, {"weights": (0.0, 0.0)}])
+    @pytest.mark.parametrize(
+        "more", [{"kind": "other"}, {"weights": (1.0,)}, {"weights": (-1.0, 2.0)}, {"weights": (0.0, 0.0)}]
+    )
     def test_bad_silhouette_settings(self, scene, more):
         with pytest.raises(InputError):
             _silhouette(scene, **more)
 
     def test_bad_fusions(self, scene):
         cue = _silhouette(scene)
-        for bad in (lambda: Fusion((cue,), ()), lambda: Fusion((cue,), (-1.0,)), lambda: Fusion((cue,), (0.0,)),
-                    lambda: fuse(cue, cue, cue, mu=0.8, nu=0.4), lambda: Fusion((cue,), (1.0,), 0.0)):
+        for bad in (
+            lambda: Fusion((cue,), ()),
+            lambda: Fusion((cue,), (-1.0,)),
+            lambda: Fusion((cue,), (0.0,)),
+            lambda: fuse(cue, cue, cue, mu=0.8, nu=0.4),
+            lambda: Fusion((cue,), (1.0,), 0.0),
+        ):
             with pytest.raises(InputError):
                 bad()
 

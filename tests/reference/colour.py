@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from reference.silhouette import outlines, segment_mask
 
 from muybridge._kernels.outline import END, KIND
 from muybridge.body.model import BodyArrays
+from reference.silhouette import outlines, segment_mask
 
 
 def depth_order(rows: np.ndarray) -> list[int]:
@@ -27,7 +27,12 @@ def label_image(pose: np.ndarray, arrays: BodyArrays, camera: np.ndarray) -> np.
 
 def histograms(labels: np.ndarray, image: np.ndarray, segments: int) -> np.ndarray:
     """Counts (K, 3, 10)."""
-    return np.array([[np.histogram(image[labels == k][:, j], bins=10, range=(0, 256))[0] for j in range(3)] for k in range(segments)])
+    return np.array(
+        [
+            [np.histogram(image[labels == k][:, j], bins=10, range=(0, 256))[0] for j in range(3)]
+            for k in range(segments)
+        ]
+    )
 
 
 def distance(reference: np.ndarray, counts: np.ndarray, by_area: bool) -> float:

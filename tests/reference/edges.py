@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-from reference.colour import depth_order
-from reference.silhouette import outlines, segment_mask
 
 from muybridge._kernels.outline import END, KIND, SIDE
 from muybridge.body.model import BodyArrays
+from reference.colour import depth_order
+from reference.silhouette import outlines, segment_mask
 
 
 def far_point(outline: np.ndarray, end: int, normal: np.ndarray) -> np.ndarray:
@@ -18,7 +18,9 @@ def far_point(outline: np.ndarray, end: int, normal: np.ndarray) -> np.ndarray:
 
 
 def points(outline: np.ndarray) -> np.ndarray:
-    """(M, 2) pixels: ten on each side line, five round each end; twelve round the larger end where it covers the other."""
+    """(M, 2) pixels: ten on each side line, five round each end; twelve round the larger end where it covers the
+    other.
+    """
     if outline[KIND] == 2:
         sides = [outline[SIDE + 6 * s + 2 : SIDE + 6 * s + 6].reshape(2, 2) for s in range(2)]
         found = [a + (i + 0.5) / 10 * (b - a) for a, b in sides for i in range(10)]

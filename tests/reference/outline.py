@@ -9,7 +9,9 @@ from muybridge.cameras.model import Camera
 
 
 def end_points(frame: np.ndarray, end: np.ndarray, half_axes: np.ndarray, steps: int = 60) -> np.ndarray:
-    """Points on the surface of one end's ellipsoid (or disc), world: (M, 3) for frame (3, 4), end (3,), half_axes (3, 3)."""
+    """Points on the surface of one end's ellipsoid (or disc), world: (M, 3) for frame (3, 4), end (3,), half_axes
+    (3, 3).
+    """
     turn, tilt = np.meshgrid(np.linspace(0, 2 * np.pi, 2 * steps), np.linspace(-np.pi / 2, np.pi / 2, steps))
     unit = np.stack([np.cos(tilt) * np.cos(turn), np.cos(tilt) * np.sin(turn), np.sin(tilt)], axis=-1).reshape(-1, 3)
     return (end + unit @ half_axes) @ frame[:, :3].T + frame[:, 3]

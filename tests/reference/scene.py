@@ -31,8 +31,13 @@ def standing(name: str = "person") -> tuple[Body, np.ndarray]:
     return body, pose
 
 
-def camera(angle: float, size: tuple[int, int] = (96, 72), distance: float = 4.0, fill: float = 0.85,
-           distortion: tuple[float, ...] = (0.0, 0.0, 0.0, 0.0, 0.0)) -> Camera:
+def camera(
+    angle: float,
+    size: tuple[int, int] = (96, 72),
+    distance: float = 4.0,
+    fill: float = 0.85,
+    distortion: tuple[float, ...] = (0.0, 0.0, 0.0, 0.0, 0.0),
+) -> Camera:
     """A camera on a circle round the origin, level, that sees 1.8 m as `fill` of its height; `angle` in radians."""
     width, height = size
     focal = fill * height * distance / 1.8
@@ -47,6 +52,8 @@ def rows(*cameras: Camera) -> np.ndarray:
     return camera_rows(cameras)
 
 
-def random_poses(rng: np.random.Generator, pose: np.ndarray, poses: int, metres: float = 0.05, radians: float = 0.3) -> np.ndarray:
+def random_poses(
+    rng: np.random.Generator, pose: np.ndarray, poses: int, metres: float = 0.05, radians: float = 0.3
+) -> np.ndarray:
     """(N, D): normal steps round a pose."""
     return pose + rng.normal(size=(poses, len(pose))) * np.r_[np.full(3, metres), np.full(len(pose) - 3, radians)]

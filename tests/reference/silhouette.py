@@ -1,4 +1,6 @@
-"""What `_kernels.silhouette` and `_kernels.draw` mean: pixel by pixel, whether it lies within a segment's span of its row."""
+"""What `_kernels.silhouette` and `_kernels.draw` mean: pixel by pixel, whether it lies within a segment's span of
+its row.
+"""
 
 from __future__ import annotations
 

@@ -1,7 +1,8 @@
 """The outer border of a silhouette as an ordered closed curve, and its Fourier descriptor (Du 2005, 5.2.3).
 
-The border is followed pixel by pixel (Moore's neighbour tracing) from its topmost, there leftmost pixel: the fixed start. A
-table over the 3 x 3 neighbourhood and the direction of arrival says where to go, so that a step has no branches.
+The border is followed pixel by pixel (Moore's neighbour tracing) from its topmost, there leftmost pixel: the fixed
+start. A table over the 3 x 3 neighbourhood and the direction of arrival says where to go, so that a step has no
+branches.
 """
 
 from __future__ import annotations
@@ -24,10 +25,11 @@ _62, _63 = np.uint64(62), np.uint64(63)
 
 
 def _next_directions() -> np.ndarray:
-    """(512 * 8,) uint8: code of the neighbourhood * 8 + direction of the last step -> direction of the next; 8: nowhere.
+    """(512 * 8,) uint8: code of the neighbourhood * 8 + direction of the last step -> direction of the next; 8:
+    nowhere.
 
-    Bit 3 (dy + 1) + dx + 1 of the code is the neighbour at (dx, dy). The search runs clockwise from two steps anticlockwise of
-    the last direction: what lies before that was found empty from the pixel before.
+    Bit 3 (dy + 1) + dx + 1 of the code is the neighbour at (dx, dy). The search runs clockwise from two steps
+    anticlockwise of the last direction: what lies before that was found empty from the pixel before.
     """
     table = np.full((512, 8), 8, np.uint8)
     for code in range(512):
@@ -71,19 +73,28 @@ def neighbourhood(flat, rows, x, row):
         above, middle, below = above << _1, middle << _1, below << _1
         if x > 0:
             left = here - np.uint64(rows)
-            above, middle, below = above | (flat[left - _1] >> _63), middle | (flat[left] >> _63), below | (flat[left + _1] >> _63)
+            above, middle, below = (
+                above | (flat[left - _1] >> _63),
+                middle | (flat[left] >> _63),
+                below | (flat[left + _1] >> _63),
+            )
     else:
         above, middle, below = above >> _62, middle >> _62, below >> _62
         right = here + np.uint64(rows)
         if right < np.uint64(flat.shape[0]):
-            above, middle, below = (above | ((flat[right - _1] & _1) << _2), middle | ((flat[right] & _1) << _2),
-                                    below | ((flat[right + _1] & _1) << _2))
+            above, middle, below = (
+                above | ((flat[right - _1] & _1) << _2),
+                middle | ((flat[right] & _1) << _2),
+                below | ((flat[right + _1] & _1) << _2),
+            )
     return (above & _7) | ((middle & _7) << _3) | ((below & _7) << _6)
 
 
 @kernel
 def start_pixel(canvas, top, bottom):
-    """The leftmost pixel of the topmost row, among rows [top, bottom) of the picture, that has one; (-1, -1) if none has."""
+    """The leftmost pixel of the topmost row, among rows [top, bottom) of the picture, that has one; (-1, -1) if
+    none has.
+    """
     for y in range(top, bottom):
         for w in range(canvas.shape[0]):
             word = canvas[w, y + 1]
@@ -94,7 +105,8 @@ def start_pixel(canvas, top, bottom):
 
 @kernel
 def trace_border(canvas, x, y, xs, ys):
-    """Follow the outer border from its start pixel, clockwise on the screen; returns its length and twice its signed area.
+    """Follow the outer border from its start pixel, clockwise on the screen; returns its length and twice its signed
+    area.
 
     canvas (words, rows) uint64 with empty spare rows; xs, ys int32 take the pixels. Stops when one place is left.
     """
@@ -130,10 +142,11 @@ def erase_component(canvas, xs, ys, count):
 
 @kernel
 def trace_largest(canvas, top, bottom, pixels, spare, xs, ys):
-    """Trace the component that encloses most, among rows [top, bottom); returns its border's length, 0 for an empty canvas.
+    """Trace the component that encloses most, among rows [top, bottom); returns its border's length, 0 for an empty
+    canvas.
 
-    `pixels` is how many the canvas holds. Nearly always the topmost component has more than half of them and is the answer;
-    otherwise it is erased from the copy `spare` and the next one is tried.
+    `pixels` is how many the canvas holds. Nearly always the topmost component has more than half of them and is the
+    answer; otherwise it is erased from the copy `spare` and the next one is tried.
     """
     x, y = start_pixel(canvas, top, bottom)
     if x < 0:
@@ -171,7 +184,9 @@ def resample_closed(xs, ys, count, real, imaginary):
 
 @kernel
 def column_transforms(real, imaginary):
-    """Radix-2 Fourier transforms down all columns of a (SIDE, SIDE) array at once, in place, output in reversed order."""
+    """Radix-2 Fourier transforms down all columns of a (SIDE, SIDE) array at once, in place, output in reversed
+    order.
+    """
     half = SIDE >> 1
     while half >= 1:
         stride = SAMPLES // (2 * half)
@@ -191,8 +206,8 @@ def column_transforms(real, imaginary):
 def fourier_descriptor(real, imaginary, work_real, work_imaginary):
     """DFT / SAMPLES, (5.10), of a curve held as (SIDE, SIDE) arrays; the result lies in `real`, `imaginary` in order.
 
-    n = SIDE a + b, f = c + SIDE d: transforms over a for every b, a turn by exp(-2 pi j b c / SAMPLES), transforms over b
-    for every c. Both times the other index is the vector lane.
+    n = SIDE a + b, f = c + SIDE d: transforms over a for every b, a turn by exp(-2 pi j b c / SAMPLES), transforms
+    over b for every c. Both times the other index is the vector lane.
     """
     column_transforms(real, imaginary)
     for i in range(SIDE):

@@ -12,7 +12,6 @@ import numpy as np
 
 from muybridge._kernels._jit import exact_kernel, kernel
 
-
 LANES = 16  # poses that are posed and projected together: two vectors of eight
 #: pi / 2 in three parts, the first two with 26 zero bits at their ends, so that multiples up to 2^26 are exact.
 _HALF_PI_1, _HALF_PI_2, _HALF_PI_3 = 1.57079625129699707031, 7.54978941586159635335e-08, 5.39030285815811905290e-15
@@ -20,15 +19,29 @@ _HALF_PI_1, _HALF_PI_2, _HALF_PI_3 = 1.57079625129699707031, 7.54978941586159635
 
 @exact_kernel
 def cosines_and_sines(angles, cosines, sines):
-    """Fill cosines and sines of angles (M,), radians, |angle| < 1e7: polynomials (Cephes) that the compiler can vectorise."""
+    """Fill cosines and sines of angles (M,), radians, |angle| < 1e7: polynomials (Cephes) that the compiler can
+    vectorise.
+    """
     for i in range(angles.shape[0]):
         turns = math.floor(angles[i] * (2.0 / math.pi) + 0.5)
         r = ((angles[i] - turns * _HALF_PI_1) - turns * _HALF_PI_2) - turns * _HALF_PI_3
         z = r * r
-        p = ((((1.58962301576546568060e-10 * z - 2.50507477628578072866e-8) * z + 2.75573136213857245213e-6) * z
-              - 1.98412698295895385996e-4) * z + 8.33333333332211858878e-3) * z - 1.66666666666666307295e-1
-        q = ((((-1.13585365213876817300e-11 * z + 2.08757008419747316778e-9) * z - 2.75573141792967388112e-7) * z
-              + 2.48015872888517045348e-5) * z - 1.38888888888730564116e-3) * z + 4.16666666666665929218e-2
+        p = (
+            (
+                ((1.58962301576546568060e-10 * z - 2.50507477628578072866e-8) * z + 2.75573136213857245213e-6) * z
+                - 1.98412698295895385996e-4
+            )
+            * z
+            + 8.33333333332211858878e-3
+        ) * z - 1.66666666666666307295e-1
+        q = (
+            (
+                ((-1.13585365213876817300e-11 * z + 2.08757008419747316778e-9) * z - 2.75573141792967388112e-7) * z
+                + 2.48015872888517045348e-5
+            )
+            * z
+            - 1.38888888888730564116e-3
+        ) * z + 4.16666666666665929218e-2
         sine, cosine = r + r * z * p, 1.0 - 0.5 * z + z * z * q
         quadrant = np.int64(turns) & 3
         s = cosine if quadrant & 1 else sine
@@ -44,7 +57,9 @@ def _row(flat, i):
 
 @kernel
 def load_lanes(poses, start, lanes, cosines, sines):
-    """Copy poses[start : start + LANES] into lanes (D, LANES), the last pose repeated where there are fewer, and turn them."""
+    """Copy poses[start : start + LANES] into lanes (D, LANES), the last pose repeated where there are fewer, and
+    turn them.
+    """
     for lane in range(LANES):
         n = min(start + lane, poses.shape[0] - 1)
         for d in range(poses.shape[1]):
@@ -57,7 +72,8 @@ def load_lanes(poses, start, lanes, cosines, sines):
 def chain_lanes(poses, cosines, sines, parent, fixed, axis, dof, frames):
     """Frames (S, 12 * LANES) of LANES poses (D, LANES) at once, with the cosines and sines (D, LANES) of their angles.
 
-    A frame's twelve rows are its (3, 4) matrix, rotation and origin; the poses are the lanes of the processor's vectors.
+    A frame's twelve rows are its (3, 4) matrix, rotation and origin; the poses are the lanes of the processor's
+    vectors.
     """
     for s in range(parent.shape[0]):
         p = parent[s]
@@ -69,7 +85,12 @@ def chain_lanes(poses, cosines, sines, parent, fixed, axis, dof, frames):
                         target[lane] = fixed[s, i, j]
                 else:
                     f0, f1, f2, f3 = fixed[s, 0, j], fixed[s, 1, j], fixed[s, 2, j], 1.0 if j == 3 else 0.0
-                    a, b, c, o = _row(frames[p], 4 * i), _row(frames[p], 4 * i + 1), _row(frames[p], 4 * i + 2), _row(frames[p], 4 * i + 3)
+                    a, b, c, o = (
+                        _row(frames[p], 4 * i),
+                        _row(frames[p], 4 * i + 1),
+                        _row(frames[p], 4 * i + 2),
+                        _row(frames[p], 4 * i + 3),
+                    )
                     for lane in range(LANES):
                         target[lane] = a[lane] * f0 + b[lane] * f1 + c[lane] * f2 + o[lane] * f3
             if p < 0:
@@ -96,7 +117,9 @@ def _turn_lanes(frame, code, cosines, sines):
 
 @kernel
 def turn_columns(frame, code, angle):
-    """Multiply the frame's rotation from the right by a turn about the axis `code` (1, 2, 3 = x, y, z; sign = sense)."""
+    """Multiply the frame's rotation from the right by a turn about the axis `code` (1, 2, 3 = x, y, z; sign =
+    sense).
+    """
     if code < 0:
         code, angle = -code, -angle
     cosine, sine = math.cos(angle), math.sin(angle)
@@ -125,7 +148,8 @@ def segment_frames(poses, parent, fixed, axis, dof):
 
 @kernel
 def dof_screws(pose, parent, fixed, axis, dof, frames, axes, anchors):
-    """World axis (D, 3) and anchor (D, 3) of every rotation, needed for derivatives; `frames` (S, 3, 4) is filled as well.
+    """World axis (D, 3) and anchor (D, 3) of every rotation, needed for derivatives; `frames` (S, 3, 4) is filled as
+    well.
 
     A turn by d about axis a through anchor o moves a point P that hangs below it by d * a x (P - o).
     """
@@ -137,8 +161,11 @@ def dof_screws(pose, parent, fixed, axis, dof, frames, axes, anchors):
                 if p < 0:
                     work[i, j] = fixed[s, i, j]
                 else:
-                    work[i, j] = (frames[p, i, 0] * fixed[s, 0, j] + frames[p, i, 1] * fixed[s, 1, j]
-                                  + frames[p, i, 2] * fixed[s, 2, j])
+                    work[i, j] = (
+                        frames[p, i, 0] * fixed[s, 0, j]
+                        + frames[p, i, 1] * fixed[s, 1, j]
+                        + frames[p, i, 2] * fixed[s, 2, j]
+                    )
             work[i, 3] += pose[i] if p < 0 else frames[p, i, 3]
         for k in range(3):
             code = axis[s, k]

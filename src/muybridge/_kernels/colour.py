@@ -1,7 +1,7 @@
 """Colour histograms of a segment's visible pixels, read from per-row prefix sums (Du 2005, 5.2.2).
 
-A table of cumulative histograms, row by row, makes a visible run of pixels cost two look-ups of all bins, however long it is.
-Three channels of ten bins fill 30 of the 32 lanes of a table cell; lane 30 counts pixels.
+A table of cumulative histograms, row by row, makes a visible run of pixels cost two look-ups of all bins, however
+long it is. Three channels of ten bins fill 30 of the 32 lanes of a table cell; lane 30 counts pixels.
 """
 
 from __future__ import annotations
@@ -20,7 +20,9 @@ _0, _1, _ONES, _LANE = np.uint64(0), np.uint64(1), np.uint64(0xFFFFFFFFFFFFFFFF)
 
 @kernel
 def histogram_table(image, table):
-    """Fill table (H, W + 1, LANES) uint16: table[y, x] counts the pixels left of x in row y of image (H, W, 3) uint8."""
+    """Fill table (H, W + 1, LANES) uint16: table[y, x] counts the pixels left of x in row y of image (H, W, 3)
+    uint8.
+    """
     height, width = image.shape[0], image.shape[1]
     for y in range(height):
         for lane in range(LANES):
@@ -37,8 +39,9 @@ def histogram_table(image, table):
 def add_seen(seen, rows, top, offset, packed, histogram):
     """Add the pixels whose bits are set in `seen` (rows,) uint64 to a histogram (LANES,) int32.
 
-    Row i of `seen` is the picture's row top + i; its bit 0 is the pixel `offset`. `packed` (H, W + 1, 8) uint64 is a table whose
-    lanes are taken four at a time: a lane's total stays below 2^16 within a word column, so that no carry leaves it.
+    Row i of `seen` is the picture's row top + i; its bit 0 is the pixel `offset`. `packed` (H, W + 1, 8) uint64 is a
+    table whose lanes are taken four at a time: a lane's total stays below 2^16 within a word column, so that no carry
+    leaves it.
     """
     s0 = s1 = s2 = s3 = s4 = s5 = s6 = s7 = _0
     any_seen = False
@@ -50,10 +53,18 @@ def add_seen(seen, rows, top, offset, packed, histogram):
             run = ~(rest >> np.uint64(start))
             stop = start + (popcount(~run & (run - _1)) if run != _0 else 64)
             before, after = packed[top + i, offset + start], packed[top + i, offset + stop]
-            s0, s1, s2, s3 = (s0 + (after[0] - before[0]), s1 + (after[1] - before[1]), s2 + (after[2] - before[2]),
-                              s3 + (after[3] - before[3]))
-            s4, s5, s6, s7 = (s4 + (after[4] - before[4]), s5 + (after[5] - before[5]), s6 + (after[6] - before[6]),
-                              s7 + (after[7] - before[7]))
+            s0, s1, s2, s3 = (
+                s0 + (after[0] - before[0]),
+                s1 + (after[1] - before[1]),
+                s2 + (after[2] - before[2]),
+                s3 + (after[3] - before[3]),
+            )
+            s4, s5, s6, s7 = (
+                s4 + (after[4] - before[4]),
+                s5 + (after[5] - before[5]),
+                s6 + (after[6] - before[6]),
+                s7 + (after[7] - before[7]),
+            )
             rest = rest & (_ONES << np.uint64(stop)) if stop < 64 else _0
     if any_seen:
         for w, word in enumerate((s0, s1, s2, s3, s4, s5, s6, s7)):

@@ -1,8 +1,9 @@
 """Outlines to spans, spans to bits: the two inner loops, written so that the compiler turns them into vector code.
 
-A canvas is (words, canvas_rows(H)) uint64, the transpose of a packed mask: one word column of a segment is a contiguous run of rows, so
-a row costs a lane and not a loop. A canvas has one spare row above the picture (row y lies at y + 1) and some below, which the
-border's tracing reads and which let every loop run over whole vectors; they stay empty.
+A canvas is (words, canvas_rows(H)) uint64, the transpose of a packed mask: one word column of a segment is a
+contiguous run of rows, so a row costs a lane and not a loop. A canvas has one spare row above the picture (row y lies
+at y + 1) and some below, which the border's tracing reads and which let every loop run over whole vectors; they stay
+empty.
 """
 
 from __future__ import annotations
@@ -24,8 +25,8 @@ BLOCK = 32  # rows counted at once
 def outline_spans(out, width, height, first, last):
     """Spans of one outline: `first` and `last` (rows,) int64 from its top row on, first > last where a row is empty.
 
-    Returns the top row, the number of rows (a multiple of VECTOR: some may lie below the outline or the picture, and are
-    empty), and the range of words touched [word, end).
+    Returns the top row, the number of rows (a multiple of VECTOR: some may lie below the outline or the picture, and
+    are empty), and the range of words touched [word, end).
     """
     if out[KIND] == 0.0:
         return 0, 0, 0, 0
@@ -109,12 +110,16 @@ def draw_outline(out, width, height, canvas, first, last):
 
 
 def canvas_rows(height: int) -> int:
-    """Rows of a canvas for a picture of `height` rows: one above, at least one and a vector below, a multiple of BLOCK."""
+    """Rows of a canvas for a picture of `height` rows: one above, at least one and a vector below, a multiple of
+    BLOCK.
+    """
     return -(-(height + 1 + VECTOR) // BLOCK) * BLOCK
 
 
 def transpose_rows(bits: np.ndarray) -> np.ndarray:
-    """Packed masks (C, H, words) uint64 -> (C, words, canvas_rows(H)) as the canvases are laid out, spare rows empty."""
+    """Packed masks (C, H, words) uint64 -> (C, words, canvas_rows(H)) as the canvases are laid out, spare rows
+    empty.
+    """
     cameras, height, words = bits.shape
     out = np.zeros((cameras, words, canvas_rows(height)), np.uint64)
     out[:, :, 1 : height + 1] = bits.transpose(0, 2, 1)

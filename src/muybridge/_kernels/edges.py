@@ -1,7 +1,8 @@
 """Edge cost along the visible outline of every cone (Sedai 2013, eq. 13).
 
-Points lie at equal steps along both side lines and round the ends. Segments are visited front to back: a point that falls on a
-pixel already drawn is hidden and dropped. One that lies before a segment behind it stays: inner edges count.
+Points lie at equal steps along both side lines and round the ends. Segments are visited front to back: a point that
+falls on a pixel already drawn is hidden and dropped. One that lies before a segment behind it stays: inner edges
+count.
 """
 
 from __future__ import annotations
@@ -24,7 +25,9 @@ _1 = np.uint64(1)
 
 @kernel
 def look_up(edge_map, canvas, width, height, x, y):
-    """Points counted (0 or 1) and cost (1 - map)^2 at the nearest pixel; none outside the picture or where it is drawn on."""
+    """Points counted (0 or 1) and cost (1 - map)^2 at the nearest pixel; none outside the picture or where it is
+    drawn on.
+    """
     i, j = math.floor(y + 0.5), math.floor(x + 0.5)
     if not (0.0 <= i <= height - 1.0 and 0.0 <= j <= width - 1.0):
         return 0, 0.0
@@ -46,7 +49,9 @@ def outline_edges(out, edge_map, canvas, width, height):
             base = SIDE + 6 * side
             dx, dy = (out[base + 4] - out[base + 2]) / SIDE_POINTS, (out[base + 5] - out[base + 3]) / SIDE_POINTS
             for i in range(SIDE_POINTS):
-                n, c = look_up(edge_map, canvas, width, height, out[base + 2] + (i + 0.5) * dx, out[base + 3] + (i + 0.5) * dy)
+                n, c = look_up(
+                    edge_map, canvas, width, height, out[base + 2] + (i + 0.5) * dx, out[base + 3] + (i + 0.5) * dy
+                )
                 points += n
                 cost += c
         dx, dy = out[END + 6] - out[END], out[END + 7] - out[END + 1]
@@ -59,7 +64,9 @@ def outline_edges(out, edge_map, canvas, width, height):
             points += n + m
             cost += c + d
         return points, cost
-    base = END if out[END + 2] + out[END + 4] >= out[END + 8] + out[END + 10] else END + 6  # the larger covers the other
+    base = (
+        END if out[END + 2] + out[END + 4] >= out[END + 8] + out[END + 10] else END + 6
+    )  # the larger covers the other
     for i in range(CIRCLE_COSINES.shape[0]):
         n, c = _end_point(out, base, CIRCLE_COSINES[i], CIRCLE_SINES[i], edge_map, canvas, width, height)
         points += n

@@ -52,7 +52,9 @@ def _depth(out):
 
 @kernel
 def draw_in_order(outlines, order, width, height, wanted, table, edge_map, canvas, first, last, seen, histograms):
-    """Draw all segments front to back, adding up colours and edges; returns rows and words touched, edge points, edge cost."""
+    """Draw all segments front to back, adding up colours and edges; returns rows and words touched, edge points,
+    edge cost.
+    """
     top, bottom, word, end = height, 0, canvas.shape[0], 0
     points, cost = 0, 0.0
     if wanted & WANT_COLOUR:
@@ -79,7 +81,9 @@ def draw_in_order(outlines, order, width, height, wanted, table, edge_map, canva
 
 @kernel
 def boundary_of(canvas, top, bottom, pixels, spare, xs, ys, square):
-    """Fourier descriptor of the canvas' outer border into square[0], square[1]; returns the border's length, 0 if none."""
+    """Fourier descriptor of the canvas' outer border into square[0], square[1]; returns the border's length, 0 if
+    none.
+    """
     count = trace_largest(canvas, top, bottom, pixels, spare, xs, ys)
     if count > 0:
         resample_closed(xs, ys, count, square[0].reshape(SAMPLES), square[1].reshape(SAMPLES))
@@ -88,13 +92,36 @@ def boundary_of(canvas, top, bottom, pixels, spare, xs, ys, square):
 
 
 @kernel
-def _one_view(camera, outlines, order, wanted, mask, table, roots, known, by_area, descriptor, coefficients, edge_map, canvas,
-              spare, first, last, seen, histograms, xs, ys, square, out):
+def _one_view(
+    camera,
+    outlines,
+    order,
+    wanted,
+    mask,
+    table,
+    roots,
+    known,
+    by_area,
+    descriptor,
+    coefficients,
+    edge_map,
+    canvas,
+    spare,
+    first,
+    last,
+    seen,
+    histograms,
+    xs,
+    ys,
+    square,
+    out,
+):
     """One row of results (RESULT_COLUMNS,) for outlines (K, OUTLINE_COLUMNS) in one camera."""
     width, height = int(camera[23]), int(camera[24])
     front_to_back(outlines, order)
-    top, bottom, word, end, points, cost = draw_in_order(outlines, order, width, height, wanted, table, edge_map, canvas, first,
-                                                         last, seen, histograms)
+    top, bottom, word, end, points, cost = draw_in_order(
+        outlines, order, width, height, wanted, table, edge_map, canvas, first, last, seen, histograms
+    )
     out[EDGE_POINTS], out[EDGE_COST], out[COLOUR], out[BOUNDARY] = points, cost, 0.0, 0.0
     if wanted & WANT_COLOUR:
         out[COLOUR] = colour_distance(histograms, roots, known, by_area)
@@ -114,19 +141,49 @@ def _one_view(camera, outlines, order, wanted, mask, table, roots, known, by_are
 
 
 @parallel_kernel
-def measure(poses, parent, fixed, axis, dof, shaped, ends, half_axes, cameras, wanted, masks, tables, roots, known, by_area,
-            descriptors, coefficients, edge_maps, out, histograms_out):
+def measure(
+    poses,
+    parent,
+    fixed,
+    axis,
+    dof,
+    shaped,
+    ends,
+    half_axes,
+    cameras,
+    wanted,
+    masks,
+    tables,
+    roots,
+    known,
+    by_area,
+    descriptors,
+    coefficients,
+    edge_maps,
+    out,
+    histograms_out,
+):
     """Fill out (N, C, RESULT_COLUMNS) for poses (N, D).
 
-    masks (C, words, canvas_rows(H)) uint64; tables (C, H, W + 1, LANES / 4) uint64 (uint16 taken four at a time), roots (C, K, LANES) float32, known (C, K) bool for
-    colour; descriptors (C, 2, SIDE, SIDE) float64 for the boundary; edge_maps (C, H, W) float32. What is not wanted may have
-    any size with the same number of cameras. histograms_out (N, C, K, LANES) int32 takes the counts unless it is empty.
+    masks (C, words, canvas_rows(H)) uint64; tables (C, H, W + 1, LANES / 4) uint64 (uint16 taken four at a time),
+    roots (C, K, LANES) float32, known (C, K) bool for colour; descriptors (C, 2, SIDE, SIDE) float64 for the
+    boundary; edge_maps (C, H, W) float32. What is not wanted may have any size with the same number of cameras.
+    histograms_out (N, C, K, LANES) int32 takes the counts unless it is empty.
     """
     count, rows, shapes = poses.shape[0], masks.shape[2], shaped.shape[0]
     for chunk in numba.prange((count + LANES - 1) // LANES):
         shape = (poses.shape[1], LANES)
-        lanes, cosines, sines, frames = np.empty(shape), np.empty(shape), np.empty(shape), np.empty((parent.shape[0], 12 * LANES))
-        kinds, ellipses, sides = np.empty((shapes, LANES)), np.empty((shapes, 12 * LANES)), np.empty((shapes, 14 * LANES))
+        lanes, cosines, sines, frames = (
+            np.empty(shape),
+            np.empty(shape),
+            np.empty(shape),
+            np.empty((parent.shape[0], 12 * LANES)),
+        )
+        kinds, ellipses, sides = (
+            np.empty((shapes, LANES)),
+            np.empty((shapes, 12 * LANES)),
+            np.empty((shapes, 14 * LANES)),
+        )
         outlines, order = np.empty((shapes, OUTLINE_COLUMNS)), np.empty(shapes, np.int64)
         canvas = np.zeros((masks.shape[1], rows), np.uint64)
         spare = np.empty(canvas.shape, np.uint64)
@@ -141,15 +198,39 @@ def measure(poses, parent, fixed, axis, dof, shaped, ends, half_axes, cameras, w
             outlines_lanes(cameras[c], frames, shaped, ends, half_axes, kinds, ellipses, sides)
             for n in range(start, min(count, start + LANES)):
                 take_lane(kinds, ellipses, sides, n - start, outlines)
-                _one_view(cameras[c], outlines, order, wanted, masks[c], tables[c], roots[c], known[c], by_area, descriptors[c],
-                          coefficients, edge_maps[c], canvas, spare, first, last, seen, histograms, xs, ys, square, out[n, c])
+                _one_view(
+                    cameras[c],
+                    outlines,
+                    order,
+                    wanted,
+                    masks[c],
+                    tables[c],
+                    roots[c],
+                    known[c],
+                    by_area,
+                    descriptors[c],
+                    coefficients,
+                    edge_maps[c],
+                    canvas,
+                    spare,
+                    first,
+                    last,
+                    seen,
+                    histograms,
+                    xs,
+                    ys,
+                    square,
+                    out[n, c],
+                )
                 if histograms_out.shape[0] > 0:
                     histograms_out[n, c] = histograms
 
 
 @kernel
 def describe_masks(masks, descriptors):
-    """Fill descriptors (C, 2, SIDE, SIDE) of masks (C, words, canvas_rows(H)) uint64; returns the borders' lengths (C,), 0 if empty."""
+    """Fill descriptors (C, 2, SIDE, SIDE) of masks (C, words, canvas_rows(H)) uint64; returns the borders' lengths
+    (C,), 0 if empty.
+    """
     lengths = np.zeros(masks.shape[0], np.int64)
     longest = masks.shape[1] * 64 * masks.shape[2]
     xs, ys, square = np.empty(longest, np.int32), np.empty(longest, np.int32), np.empty((4, SIDE, SIDE))

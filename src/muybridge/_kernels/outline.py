@@ -1,13 +1,13 @@
 """The outline of a cone in a picture: two ellipses and their outer tangents, and from these one span per picture row.
 
-A cone's ends are ellipsoids (flat ends: discs, one half axis is zero). An end with half axes a_j is seen, to first order
-around its centre, as the ellipse {c + sum_j w_j J a_j, |w| <= 1} with J the derivative of the projection: an ellipse with
-matrix M = sum_j (J a_j)(J a_j)^T and support function h(n) = sqrt(n^T M n). The cone is the convex hull of both. On its
-tangents both ends reach equally far, c_1 n + h_1(n) = c_2 n + h_2(n), which is solved for the normal n by Newton steps from
-the closed form for circles.
+A cone's ends are ellipsoids (flat ends: discs, one half axis is zero). An end with half axes a_j is seen, to first
+order around its centre, as the ellipse {c + sum_j w_j J a_j, |w| <= 1} with J the derivative of the projection: an
+ellipse with matrix M = sum_j (J a_j)(J a_j)^T and support function h(n) = sqrt(n^T M n). The cone is the convex hull
+of both. On its tangents both ends reach equally far, c_1 n + h_1(n) = c_2 n + h_2(n), which is solved for the normal
+n by Newton steps from the closed form for circles.
 
-A camera is a row of numbers: fx, fy, cx, cy, skew, k1, k2, p1, p2, k3, largest radius squared, R (9), t (3), width, height.
-An outline is a row of numbers: see the column names below.
+A camera is a row of numbers: fx, fy, cx, cy, skew, k1, k2, p1, p2, k3, largest radius squared, R (9), t (3), width,
+height. An outline is a row of numbers: see the column names below.
 """
 
 from __future__ import annotations
@@ -20,7 +20,8 @@ from muybridge._kernels._jit import kernel, vector_kernel
 from muybridge._kernels.chain import LANES
 
 CAMERA_COLUMNS = 25
-#: Columns of an outline: kind (0 unseen, 1 ellipses only, 2 with tangents), then twice the end (c_x, c_y, M_xx, M_xy, M_yy,
+#: Columns of an outline: kind (0 unseen, 1 ellipses only, 2 with tangents), then twice the end (c_x, c_y, M_xx, M_xy,
+#: M_yy,
 #: depth), then for each of the two sides the normal and the tangent points on both ends, then first and last y.
 KIND, END, SIDE, TOP, BOTTOM, OUTLINE_COLUMNS = 0, 1, 13, 25, 26, 27
 NEAREST = 0.05  # metres; what is nearer than this, or behind, is not drawn
@@ -33,8 +34,22 @@ BISECTIONS = 40
 @kernel
 def project(camera, x, y, z):
     """Pixel and its derivative by the camera-frame point: u, v, du/dx, du/dy, du/dz, dv/dx, dv/dy, dv/dz (z > 0)."""
-    return _project(camera[0], camera[1], camera[2], camera[3], camera[4], camera[5], camera[6], camera[7], camera[8], camera[9],
-                    camera[10], x, y, z)
+    return _project(
+        camera[0],
+        camera[1],
+        camera[2],
+        camera[3],
+        camera[4],
+        camera[5],
+        camera[6],
+        camera[7],
+        camera[8],
+        camera[9],
+        camera[10],
+        x,
+        y,
+        z,
+    )
 
 
 @vector_kernel
@@ -55,16 +70,26 @@ def _project(fx, fy, cx, cy, skew, k1, k2, p1, p2, k3, edge, x, y, z):
     bb = factor + 2.0 * slope * b * b + 6.0 * p1 * b + 2.0 * p2 * a
     ua, ub = fx * aa + skew * ab, fx * ab + skew * bb
     va, vb = fy * ab, fy * bb
-    return (fx * ad + skew * bd + cx, fy * bd + cy,
-            ua * w, ub * w, -(ua * a + ub * b) * w, va * w, vb * w, -(va * a + vb * b) * w)
+    return (
+        fx * ad + skew * bd + cx,
+        fy * bd + cy,
+        ua * w,
+        ub * w,
+        -(ua * a + ub * b) * w,
+        va * w,
+        vb * w,
+        -(va * a + vb * b) * w,
+    )
 
 
 @kernel
 def outline_lanes(camera, frame, ends, half_axes, kinds, ellipses, sides):
-    """Outlines of one segment in LANES poses at once; a row of LANES numbers follows another in each of the flat arrays.
+    """Outlines of one segment in LANES poses at once; a row of LANES numbers follows another in each of the flat
+    arrays.
 
-    frame holds the 12 numbers of the segment's frames. An outline's columns are spread over kinds (1 row), ellipses (12) and
-    sides (14): arrays of their own with a stride that the compiler knows, which is what lets it make vector code.
+    frame holds the 12 numbers of the segment's frames. An outline's columns are spread over kinds (1 row), ellipses
+    (12) and sides (14): arrays of their own with a stride that the compiler knows, which is what lets it make vector
+    code.
     """
     for e in range(2):
         _end_lanes(camera, frame, ends[e], half_axes[e], ellipses[6 * LANES * e : 6 * LANES * (e + 1)])
@@ -85,18 +110,51 @@ def _end_lanes(camera, frame, end, half_axes, out):
     r0, r1, r2, r3, r4 = camera[11], camera[12], camera[13], camera[14], camera[15]
     r5, r6, r7, r8, t0, t1, t2 = camera[16], camera[17], camera[18], camera[19], camera[20], camera[21], camera[22]
     e0, e1, e2 = end[0], end[1], end[2]
-    a0, a1, a2, b0, b1, b2 = (half_axes[0, 0], half_axes[0, 1], half_axes[0, 2], half_axes[1, 0], half_axes[1, 1],
-                              half_axes[1, 2])
+    a0, a1, a2, b0, b1, b2 = (
+        half_axes[0, 0],
+        half_axes[0, 1],
+        half_axes[0, 2],
+        half_axes[1, 0],
+        half_axes[1, 1],
+        half_axes[1, 2],
+    )
     c0, c1, c2 = half_axes[2, 0], half_axes[2, 1], half_axes[2, 2]
     for lane in range(LANES):
         f0, f1, f2, f3 = frame[lane], frame[1 * LANES + lane], frame[2 * LANES + lane], frame[3 * LANES + lane]
-        g0, g1, g2, g3 = frame[4 * LANES + lane], frame[5 * LANES + lane], frame[6 * LANES + lane], frame[7 * LANES + lane]
-        h0, h1, h2, h3 = frame[8 * LANES + lane], frame[9 * LANES + lane], frame[10 * LANES + lane], frame[11 * LANES + lane]
-        wx, wy, wz = (f0 * e0 + f1 * e1 + f2 * e2 + f3, g0 * e0 + g1 * e1 + g2 * e2 + g3, h0 * e0 + h1 * e1 + h2 * e2 + h3)
+        g0, g1, g2, g3 = (
+            frame[4 * LANES + lane],
+            frame[5 * LANES + lane],
+            frame[6 * LANES + lane],
+            frame[7 * LANES + lane],
+        )
+        h0, h1, h2, h3 = (
+            frame[8 * LANES + lane],
+            frame[9 * LANES + lane],
+            frame[10 * LANES + lane],
+            frame[11 * LANES + lane],
+        )
+        wx, wy, wz = (
+            f0 * e0 + f1 * e1 + f2 * e2 + f3,
+            g0 * e0 + g1 * e1 + g2 * e2 + g3,
+            h0 * e0 + h1 * e1 + h2 * e2 + h3,
+        )
         z = r6 * wx + r7 * wy + r8 * wz + t2
         u, v, ux, uy, uz, vx, vy, vz = _project(
-            fx, fy, cx, cy, skew, k1, k2, p1, p2, k3, edge,
-            r0 * wx + r1 * wy + r2 * wz + t0, r3 * wx + r4 * wy + r5 * wz + t1, max(z, NEAREST))
+            fx,
+            fy,
+            cx,
+            cy,
+            skew,
+            k1,
+            k2,
+            p1,
+            p2,
+            k3,
+            edge,
+            r0 * wx + r1 * wy + r2 * wz + t0,
+            r3 * wx + r4 * wy + r5 * wz + t1,
+            max(z, NEAREST),
+        )
         # derivative by the world point, then by the segment's own coordinates, then along the half axes
         wu0, wu1, wu2 = ux * r0 + uy * r3 + uz * r6, ux * r1 + uy * r4 + uz * r7, ux * r2 + uy * r5 + uz * r8
         wv0, wv1, wv2 = vx * r0 + vy * r3 + vz * r6, vx * r1 + vy * r4 + vz * r7, vx * r2 + vy * r5 + vz * r8
@@ -144,14 +202,28 @@ def _newton(ex, ey, nxx, nxy, nyy, mx, my):
 
 @kernel
 def _tangent_lanes(ellipses, kinds, sides):
-    """Find both outer tangents of ellipses, 12 rows: kind 1 where one end covers the other, else 2 or UNSOLVED; first and last y.
+    """Find both outer tangents of ellipses, 12 rows: kind 1 where one end covers the other, else 2 or UNSOLVED; first
+    and last y.
 
-    With M_1 = L L^T and n = L^-T m the first end becomes the unit circle, and with both ends of one shape the second nearly a
-    circle: the tangents' condition d' m + h_2'(m) = 1, d' = L^-1 d, is solved in closed form for a circle, then by Newton steps.
+    With M_1 = L L^T and n = L^-T m the first end becomes the unit circle, and with both ends of one shape the second
+    nearly a circle: the tangents' condition d' m + h_2'(m) = 1, d' = L^-1 d, is solved in closed form for a circle,
+    then by Newton steps.
     """
     for lane in range(LANES):
-        ax, ay, axx, axy, ayy = ellipses[lane], ellipses[1 * LANES + lane], ellipses[2 * LANES + lane], ellipses[3 * LANES + lane], ellipses[4 * LANES + lane]
-        bx, by, bxx, bxy, byy = ellipses[6 * LANES + lane], ellipses[7 * LANES + lane], ellipses[8 * LANES + lane], ellipses[9 * LANES + lane], ellipses[10 * LANES + lane]
+        ax, ay, axx, axy, ayy = (
+            ellipses[lane],
+            ellipses[1 * LANES + lane],
+            ellipses[2 * LANES + lane],
+            ellipses[3 * LANES + lane],
+            ellipses[4 * LANES + lane],
+        )
+        bx, by, bxx, bxy, byy = (
+            ellipses[6 * LANES + lane],
+            ellipses[7 * LANES + lane],
+            ellipses[8 * LANES + lane],
+            ellipses[9 * LANES + lane],
+            ellipses[10 * LANES + lane],
+        )
         l00, l10, l11, i00, i10, i11, ex, ey, nxx, nxy, nyy = _whiten(axx, axy, ayy, bxx, bxy, byy, bx - ax, by - ay)
         distance = max(1e-9, math.sqrt(ex * ex + ey * ey))
         ux, uy = ex / distance, ey / distance
@@ -170,24 +242,41 @@ def _tangent_lanes(ellipses, kinds, sides):
         length = 1.0 / math.sqrt(nx * nx + ny * ny)
         sides[lane], sides[1 * LANES + lane] = nx * length, ny * length
         sides[2 * LANES + lane], sides[3 * LANES + lane] = ax + l00 * mx, ay + l10 * mx + l11 * my
-        sides[4 * LANES + lane], sides[5 * LANES + lane] = bx + (bxx * nx + bxy * ny) * scale, by + (bxy * nx + byy * ny) * scale
+        sides[4 * LANES + lane], sides[5 * LANES + lane] = (
+            bx + (bxx * nx + bxy * ny) * scale,
+            by + (bxy * nx + byy * ny) * scale,
+        )
         scale = 1.0 / (1.0 - ex * kx - ey * ky)
         nx, ny = i00 * kx + i10 * ky, i11 * ky
         length = 1.0 / math.sqrt(nx * nx + ny * ny)
         sides[6 * LANES + lane], sides[7 * LANES + lane] = nx * length, ny * length
         sides[8 * LANES + lane], sides[9 * LANES + lane] = ax + l00 * kx, ay + l10 * kx + l11 * ky
-        sides[10 * LANES + lane], sides[11 * LANES + lane] = bx + (bxx * nx + bxy * ny) * scale, by + (bxy * nx + byy * ny) * scale
+        sides[10 * LANES + lane], sides[11 * LANES + lane] = (
+            bx + (bxx * nx + bxy * ny) * scale,
+            by + (bxy * nx + byy * ny) * scale,
+        )
         first, second = math.sqrt(ayy), math.sqrt(byy)
         sides[12 * LANES + lane] = min(ay - first, by - second)
         sides[13 * LANES + lane] = max(ay + first, by + second)
 
 
-
 @kernel
 def _bisect_tangents(ellipses, sides, lane):
     """The same for one lane where Newton's steps did not settle: thin discs seen edge on."""
-    ax, ay, axx, axy, ayy = ellipses[lane], ellipses[1 * LANES + lane], ellipses[2 * LANES + lane], ellipses[3 * LANES + lane], ellipses[4 * LANES + lane]
-    bx, by, bxx, bxy, byy = ellipses[6 * LANES + lane], ellipses[7 * LANES + lane], ellipses[8 * LANES + lane], ellipses[9 * LANES + lane], ellipses[10 * LANES + lane]
+    ax, ay, axx, axy, ayy = (
+        ellipses[lane],
+        ellipses[1 * LANES + lane],
+        ellipses[2 * LANES + lane],
+        ellipses[3 * LANES + lane],
+        ellipses[4 * LANES + lane],
+    )
+    bx, by, bxx, bxy, byy = (
+        ellipses[6 * LANES + lane],
+        ellipses[7 * LANES + lane],
+        ellipses[8 * LANES + lane],
+        ellipses[9 * LANES + lane],
+        ellipses[10 * LANES + lane],
+    )
     l00, l10, l11, i00, i10, i11, ex, ey, nxx, nxy, nyy = _whiten(axx, axy, ayy, bxx, bxy, byy, bx - ax, by - ay)
     distance = math.sqrt(ex * ex + ey * ey)
     ux, uy = ex / distance, ey / distance
@@ -209,7 +298,10 @@ def _bisect_tangents(ellipses, sides, lane):
         base = 6 * side
         sides[(base) * LANES + lane], sides[(base + 1) * LANES + lane] = nx * length, ny * length
         sides[(base + 2) * LANES + lane], sides[(base + 3) * LANES + lane] = ax + l00 * mx, ay + l10 * mx + l11 * my
-        sides[(base + 4) * LANES + lane], sides[(base + 5) * LANES + lane] = bx + (bxx * nx + bxy * ny) * scale, by + (bxy * nx + byy * ny) * scale
+        sides[(base + 4) * LANES + lane], sides[(base + 5) * LANES + lane] = (
+            bx + (bxx * nx + bxy * ny) * scale,
+            by + (bxy * nx + byy * ny) * scale,
+        )
 
 
 @kernel
@@ -250,7 +342,9 @@ def outlines_of(camera, frames, shaped, ends, half_axes, out):
 
 @kernel
 def outlines_lanes(camera, frames, shaped, ends, half_axes, kinds, ellipses, sides):
-    """The same for LANES poses at once: frames (S, 12 * LANES), kinds (K, LANES), ellipses (K, 12 * LANES), sides (K, 14 * LANES)."""
+    """The same for LANES poses at once: frames (S, 12 * LANES), kinds (K, LANES), ellipses (K, 12 * LANES), sides
+    (K, 14 * LANES).
+    """
     for k in range(shaped.shape[0]):
         s = shaped[k]
         outline_lanes(camera, frames[s], ends[s], half_axes[s], kinds[k], ellipses[k], sides[k])

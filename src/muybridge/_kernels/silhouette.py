@@ -1,6 +1,7 @@
 """Silhouettes of many poses, drawn as bits and counted against the observed mask (Du 2005, 5.2.1; Sedai 2013, IV-A).
 
-Three floors: `silhouette_counts` -> `_over_particles` (parallel; chain and outlines of LANES poses at once) -> `_one_view`.
+Three floors: `silhouette_counts` -> `_over_particles` (parallel; chain and outlines of LANES poses at once) ->
+`_one_view`.
 """
 
 from __future__ import annotations
@@ -68,8 +69,17 @@ def _over_particles(poses, parent, fixed, axis, dof, shaped, ends, half_axes, ca
     count, rows, shapes = poses.shape[0], masks.shape[2], shaped.shape[0]
     for chunk in numba.prange((count + LANES - 1) // LANES):
         shape = (poses.shape[1], LANES)
-        lanes, cosines, sines, frames = np.empty(shape), np.empty(shape), np.empty(shape), np.empty((parent.shape[0], 12 * LANES))
-        kinds, ellipses, sides = np.empty((shapes, LANES)), np.empty((shapes, 12 * LANES)), np.empty((shapes, 14 * LANES))
+        lanes, cosines, sines, frames = (
+            np.empty(shape),
+            np.empty(shape),
+            np.empty(shape),
+            np.empty((parent.shape[0], 12 * LANES)),
+        )
+        kinds, ellipses, sides = (
+            np.empty((shapes, LANES)),
+            np.empty((shapes, 12 * LANES)),
+            np.empty((shapes, 14 * LANES)),
+        )
         outlines = np.empty((shapes, OUTLINE_COLUMNS))
         canvas = np.zeros((masks.shape[1], rows), np.uint64)
         first, last = np.empty(rows, np.int64), np.empty(rows, np.int64)

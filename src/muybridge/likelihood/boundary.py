@@ -1,8 +1,8 @@
 """The silhouette's outer border as evidence, through its Fourier descriptor (Du 2005, 5.2.3).
 
-Differences from the paper: the border is resampled to SAMPLES points before the transform, so that borders of different length
-can be compared; "the first 100 coefficients" are the 100 lowest frequencies of either sign, without which not even an ellipse
-comes back.
+Differences from the paper: the border is resampled to SAMPLES points before the transform, so that borders of
+different length can be compared; "the first 100 coefficients" are the 100 lowest frequencies of either sign, without
+which not even an ellipse comes back.
 """
 
 from __future__ import annotations
@@ -35,7 +35,8 @@ def largest_component(mask: np.ndarray) -> np.ndarray:
 
 
 def descriptors_of(masks: Sequence[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
-    """Fourier descriptors (C, 2, SIDE, SIDE) float64, pixels, of the largest part of each mask (H, W) bool; and which have one.
+    """Fourier descriptors (C, 2, SIDE, SIDE) float64, pixels, of the largest part of each mask (H, W) bool; and which
+    have one.
 
     Index (c, 0, f // SIDE, f % SIDE) is the real part of frequency f, (c, 1, ...) the imaginary.
     """
@@ -75,7 +76,11 @@ class BoundaryCue:
         if not 1 <= self.coefficients <= SAMPLES:
             raise InputError("boundary cue: coefficients", expected=f"1 to {SAMPLES}", got=str(self.coefficients))
         if len(self.descriptors) != len(self.cameras):
-            raise InputError("boundary cue: descriptors", expected=f"one for each of {len(self.cameras)} cameras", got=str(len(self.descriptors)))
+            raise InputError(
+                "boundary cue: descriptors",
+                expected=f"one for each of {len(self.cameras)} cameras",
+                got=str(len(self.descriptors)),
+            )
         object.__setattr__(self, "camera_shares", shares(self.weights, len(self.cameras)))
 
     @cached_property
@@ -87,7 +92,9 @@ class BoundaryCue:
         return self.from_results(measure_cues(poses, self.arrays, self.cameras, self.size, boundary=self.kernel_input))
 
     def from_results(self, results: np.ndarray) -> np.ndarray:
-        """log p3 = -rho ||FD - FD'||, (5.11), from results (N, C, RESULT_COLUMNS); a pose that is not seen has the least."""
+        """log p3 = -rho ||FD - FD'||, (5.11), from results (N, C, RESULT_COLUMNS); a pose that is not seen has the
+        least.
+        """
         least = np.log(SMALLEST_PROBABILITY)
         by_camera = np.maximum(least, -self.rho * results[..., BOUNDARY])
         return average(np.where(self.found, by_camera, 0.0), self.camera_shares)

@@ -1,10 +1,10 @@
 """Colour histograms of the visible segments against a reference (Du 2005, 5.2.2).
 
-The reference is measured at a known pose; `fill_reference` completes it by the left-right symmetry of clothes and by the rule
-that a hidden part looks like the visible part.
+The reference is measured at a known pose; `fill_reference` completes it by the left-right symmetry of clothes and by
+the rule that a hidden part looks like the visible part.
 
-Differences from the paper: the shares alpha_m of (5.5) are of the *visible* area, so that a hidden segment, whose histogram is
-empty, says nothing; (5.3) is divided by the number of segments seen, which beta absorbs.
+Differences from the paper: the shares alpha_m of (5.5) are of the *visible* area, so that a hidden segment, whose
+histogram is empty, says nothing; (5.3) is divided by the number of segments seen, which beta absorbs.
 """
 
 from __future__ import annotations
@@ -39,8 +39,11 @@ class ColourReference:
 
     def __post_init__(self) -> None:
         if self.histograms.shape != (*self.known.shape, CHANNELS, BINS):
-            raise InputError("colour reference", expected=f"histograms of shape {(*self.known.shape, CHANNELS, BINS)}",
-                             got=str(self.histograms.shape))
+            raise InputError(
+                "colour reference",
+                expected=f"histograms of shape {(*self.known.shape, CHANNELS, BINS)}",
+                got=str(self.histograms.shape),
+            )
 
     @cached_property
     def roots(self) -> np.ndarray:
@@ -54,7 +57,9 @@ def colour_tables(images: Sequence[np.ndarray]) -> np.ndarray:
     """Cumulative histograms (C, H, W + 1, LANES) uint16 of pictures (H, W, 3) uint8, padded to one size."""
     height, width = max(i.shape[0] for i in images), max(i.shape[1] for i in images)
     if height > TALLEST:
-        raise InputError("pictures for colour", expected=f"at most {TALLEST} rows", got=str(height), remedy="reduce them")
+        raise InputError(
+            "pictures for colour", expected=f"at most {TALLEST} rows", got=str(height), remedy="reduce them"
+        )
     tables = np.zeros((len(images), height, width + 1, LANES), np.uint16)
     for table, image in zip(tables, images, strict=True):
         if image.ndim != 3 or image.shape[2] != 3 or image.dtype != np.uint8:
@@ -80,7 +85,9 @@ def mirrored_segments(names: Sequence[str]) -> np.ndarray:
 
 
 def fill_reference(reference: ColourReference, mirrored: np.ndarray) -> ColourReference:
-    """Fill what was hidden: from the other side in the same camera, else the same segment or its twin in other cameras."""
+    """Fill what was hidden: from the other side in the same camera, else the same segment or its twin in other
+    cameras.
+    """
     histograms, known = reference.histograms.copy(), reference.known.copy()
     for c, k in zip(*np.nonzero(~reference.known), strict=True):
         twin = mirrored[k]
@@ -93,12 +100,16 @@ def fill_reference(reference: ColourReference, mirrored: np.ndarray) -> ColourRe
     return ColourReference(histograms, known)
 
 
-def update_reference(reference: ColourReference, measured: ColourReference, rate: float = UPDATE_RATE) -> ColourReference:
+def update_reference(
+    reference: ColourReference, measured: ColourReference, rate: float = UPDATE_RATE
+) -> ColourReference:
     """H+_k = lambda H-_k + (1 - lambda) H+_{k-1}, (5.7), where a segment is seen; what is new is taken as it is."""
     if not 0.0 <= rate <= 1.0:
         raise InputError("colour reference: rate", expected="a number in [0, 1]", got=repr(rate))
     share = np.where(measured.known, np.where(reference.known, rate, 1.0), 0.0)[..., None, None]
-    return ColourReference(share * measured.histograms + (1.0 - share) * reference.histograms, reference.known | measured.known)
+    return ColourReference(
+        share * measured.histograms + (1.0 - share) * reference.histograms, reference.known | measured.known
+    )
 
 
 @dataclass(frozen=True, eq=False)
@@ -127,7 +138,11 @@ class ColourCue:
     def __post_init__(self) -> None:
         expected = (len(self.cameras), len(self.arrays.shaped))
         if self.reference.known.shape != expected or len(self.tables) != expected[0]:
-            raise InputError("colour cue: reference", expected=f"{expected} cameras and segments", got=str(self.reference.known.shape))
+            raise InputError(
+                "colour cue: reference",
+                expected=f"{expected} cameras and segments",
+                got=str(self.reference.known.shape),
+            )
         object.__setattr__(self, "camera_shares", shares(self.weights, len(self.cameras)))
 
     @cached_property

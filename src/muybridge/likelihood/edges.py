@@ -18,17 +18,21 @@ BLUR = 2.0  # pixels, standard deviation; a little more than a particle's error 
 MARGIN = 3  # pixels by which the mask is widened: its own rim is an edge too
 
 
-def edge_map(image: np.ndarray, mask: np.ndarray, threshold: float = THRESHOLD, blur: float = BLUR, margin: int = MARGIN) -> np.ndarray:
+def edge_map(
+    image: np.ndarray, mask: np.ndarray, threshold: float = THRESHOLD, blur: float = BLUR, margin: int = MARGIN
+) -> np.ndarray:
     """How near an edge is, (H, W) float32 in [0, 1], for a picture (H, W, 3) or (H, W) uint8 and a mask (H, W) bool.
 
-    The gradient is thresholded, what lies off the widened mask is removed, and the rest is blurred so that a straight line has
-    the value 1 along its middle.
+    The gradient is thresholded, what lies off the widened mask is removed, and the rest is blurred so that a straight
+    line has the value 1 along its middle.
     """
     if image.shape[:2] != mask.shape:
         raise InputError("mask", expected=f"the picture's size {image.shape[:2]}", got=str(mask.shape))
     grey = image if image.ndim == 2 else cv2.cvtColor(image, cv2.COLOR_BGR2GRAY)
     smooth = cv2.GaussianBlur(grey, (3, 3), 0).astype(np.float32)
-    gradient = cv2.magnitude(cv2.Sobel(smooth, cv2.CV_32F, 1, 0, scale=0.125), cv2.Sobel(smooth, cv2.CV_32F, 0, 1, scale=0.125))
+    gradient = cv2.magnitude(
+        cv2.Sobel(smooth, cv2.CV_32F, 1, 0, scale=0.125), cv2.Sobel(smooth, cv2.CV_32F, 0, 1, scale=0.125)
+    )
     near = cv2.dilate(mask.astype(np.uint8), np.ones((2 * margin + 1, 2 * margin + 1), np.uint8)) > 0
     lines = ((gradient > threshold / 2.0) & near).astype(np.float32)  # a step of t has a central difference of t / 2
     line = blur * np.sqrt(2.0 * np.pi) if blur > 0 else 1.0
@@ -62,7 +66,9 @@ class EdgeCue:
 
     def __post_init__(self) -> None:
         if len(self.maps) != len(self.cameras):
-            raise InputError("edge cue: maps", expected=f"one for each of {len(self.cameras)} cameras", got=str(len(self.maps)))
+            raise InputError(
+                "edge cue: maps", expected=f"one for each of {len(self.cameras)} cameras", got=str(len(self.maps))
+            )
         object.__setattr__(self, "camera_shares", shares(self.weights, len(self.cameras)))
 
     def log_prob(self, poses: np.ndarray) -> np.ndarray:
@@ -71,7 +77,9 @@ class EdgeCue:
         return self.from_results(measure_cues(poses, self.arrays, self.cameras, size, edge_maps=self.maps))
 
     def from_results(self, results: np.ndarray) -> np.ndarray:
-        """Minus (13), mean over points of (1 - map)^2, from results (N, C, RESULT_COLUMNS); 1 where no point is seen."""
+        """Minus (13), mean over points of (1 - map)^2, from results (N, C, RESULT_COLUMNS); 1 where no point is
+        seen.
+        """
         points = results[..., EDGE_POINTS]
         cost = np.where(points > 0, results[..., EDGE_COST] / np.maximum(points, 1), 1.0)
         return average(-cost, self.camera_shares)

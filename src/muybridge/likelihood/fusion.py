@@ -50,9 +50,13 @@ class Fusion:
 
     def __post_init__(self) -> None:
         if len(self.cues) != len(self.weights):
-            raise InputError("fusion: weights", expected=f"one for each of {len(self.cues)} cues", got=str(len(self.weights)))
+            raise InputError(
+                "fusion: weights", expected=f"one for each of {len(self.cues)} cues", got=str(len(self.weights))
+            )
         if any(not (np.isfinite(w) and w >= 0) for w in self.weights) or not any(self.weights):
-            raise InputError("fusion: weights", expected="finite numbers, none negative, not all 0", got=str(self.weights))
+            raise InputError(
+                "fusion: weights", expected="finite numbers, none negative, not all 0", got=str(self.weights)
+            )
         if not (np.isfinite(self.sharpness) and self.sharpness > 0):
             raise InputError("fusion: sharpness", expected="a positive number", got=repr(self.sharpness))
 
@@ -68,7 +72,9 @@ class Fusion:
         return self.sharpness * total
 
 
-def fuse(silhouette: Cue, colour: Cue, boundary: Cue, mu: float = EQUAL, nu: float = EQUAL, sharpness: float = 1.0) -> Fusion:
+def fuse(
+    silhouette: Cue, colour: Cue, boundary: Cue, mu: float = EQUAL, nu: float = EQUAL, sharpness: float = 1.0
+) -> Fusion:
     """The thesis' three cues, p1^mu p2^nu p3^(1 - mu - nu), (5.12)."""
     if not (mu >= 0 and nu >= 0 and mu + nu <= 1):
         raise InputError("fusion: mu, nu", expected="numbers in [0, 1] whose sum is not above 1", got=f"{mu}, {nu}")
@@ -76,7 +82,9 @@ def fuse(silhouette: Cue, colour: Cue, boundary: Cue, mu: float = EQUAL, nu: flo
 
 
 def _measured_together(cues: Sequence[Any]) -> list[Any]:
-    """Those cues, at most one of a kind, that share the first one's body, cameras and size; empty where one would be alone."""
+    """Those cues, at most one of a kind, that share the first one's body, cameras and size; empty where one would
+    be alone.
+    """
     chosen: dict[type, Any] = {}
     for cue in cues:
         if type(cue) not in (SilhouetteCue, ColourCue, BoundaryCue, EdgeCue) or type(cue) in chosen:

@@ -1,7 +1,8 @@
-"""Area of the silhouette as evidence: by intersection over union (Du 2005, 5.1) or by what is missed and spilt (Sedai 2013, 12).
+"""Area of the silhouette as evidence: by intersection over union (Du 2005, 5.1) or by what is missed and spilt (Sedai
+2013, 12).
 
-Z is the observed silhouette, H the model's. Differences from the papers: none in value; a camera whose mask is empty says the
-same of every pose.
+Z is the observed silhouette, H the model's. Differences from the papers: none in value; a camera whose mask is empty
+says the same of every pose.
 """
 
 from __future__ import annotations
@@ -71,7 +72,11 @@ class SilhouetteCue:
         if self.kind not in KINDS:
             raise InputError("silhouette cue: kind", expected=f"one of {', '.join(KINDS)}", got=repr(self.kind))
         if len(self.bits) != len(self.cameras) or len(self.areas) != len(self.cameras):
-            raise InputError("silhouette cue: masks", expected=f"one for each of {len(self.cameras)} cameras", got=str(len(self.bits)))
+            raise InputError(
+                "silhouette cue: masks",
+                expected=f"one for each of {len(self.cameras)} cameras",
+                got=str(len(self.bits)),
+            )
         object.__setattr__(self, "camera_shares", shares(self.weights, len(self.cameras)))
 
     @cached_property
