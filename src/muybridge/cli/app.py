@@ -9,7 +9,7 @@ import warnings
 from cyclopts import App, CycloptsError
 
 from muybridge import __version__
-from muybridge.cli.reporting import BAD_INPUT, DONE, INTERRUPTED
+from muybridge.cli.reporting import BAD_INPUT, DONE, INTERRUPTED, LOST
 from muybridge.errors import MuybridgeError
 
 #: name -> module and function, and the line that --help shows without importing it.
