@@ -4,5 +4,4 @@
 |---|---|
 | `machine` | the hardware, versions and commit that a number belongs to |
 | `speed` | `BENCHMARKS`: likelihoods, filters, rendering; each a row of the table that `muybridge bench` prints |
-| `peer` | the same silhouette likelihood as one would write it with OpenCV and NumPy, a pose at a time |
 """

@@ -15,17 +15,15 @@ from functools import lru_cache, partial
 import numpy as np
 
 from muybridge.body import Body, named_body
-from muybridge.experiments.peer import silhouette_costs
 from muybridge.filters import METHODS, GaussianWalk
+from muybridge.likelihood.benchmark import bench_scene, time_likelihood
+from muybridge.likelihood.fusion import fuse
 from muybridge.likelihood.observation import ImageLikelihood, Observation
 from muybridge.synthetic.scene import demo_scene, render, truth
 
 REDUCTION = 2
 """The demo's pictures of 640 x 480 become 320 x 240."""
-POSES, PEER_POSES = 2000, 100
 REPEATS = 7
-SPREAD = 0.05
-"""Standard deviation of the poses around a standing person, radians and metres."""
 
 
 @dataclass(frozen=True)
@@ -49,10 +47,6 @@ class Setting:
     """At 640 x 480."""
     mean: np.ndarray
 
-    def poses(self, rng: np.random.Generator, count: int) -> np.ndarray:
-        """(count, D) float64 around the person."""
-        return self.mean + rng.normal(0, SPREAD, (count, len(self.mean)))
-
 
 @lru_cache(maxsize=1)
 def setting() -> Setting:
@@ -64,56 +58,64 @@ def setting() -> Setting:
     return Setting(body, likelihood, render(scene, 0)[1], mean)
 
 
-def silhouette(rng: np.random.Generator) -> Iterator[Measurement]:
-    """The silhouette likelihood's kernel, and its peer in OpenCV and NumPy, on the same poses."""
-    made = setting()
-    observed = made.likelihood.observe(made.masks)
-    cameras = len(made.masks)
-    poses = made.poses(rng, POSES)
-    with one_thread():
-        ours = 1e6 * median_seconds(lambda: observed.costs(poses)) / (POSES * cameras)
-        yield Measurement("silhouette, 320 x 240, a pose and camera", ours, "us", floor=4, aim=2)
-        peer = 1e6 * median_seconds(lambda: peer_costs(made, poses[:PEER_POSES]), 3) / (PEER_POSES * cameras)
-    yield Measurement("the same with OpenCV and NumPy, a pose at a time", peer, "us")
-    yield Measurement("how many times faster", peer / ours, "x", floor=40, aim=100)
+TARGETS = {"silhouette": (4.0, 2.0), "silhouette + colour + boundary": (30.0, 12.0)}
+"""Microseconds per evaluation and camera: at least, aim."""
+
+
+def likelihood(rng: np.random.Generator) -> Iterator[Measurement]:
+    """Each cue and all together, and the same in OpenCV and NumPy; CPU time, see `muybridge.likelihood.benchmark`."""
+    times = {timing.name: timing.microseconds for timing in time_likelihood()}
+    for name, microseconds in times.items():
+        floor, aim = TARGETS.get(name, (None, None))
+        yield Measurement(f"{name}, an evaluation and camera", microseconds, "us", floor, aim)
+    three = times["OpenCV + NumPy, three cues"] / times["silhouette + colour + boundary"]
+    alone = times["OpenCV + NumPy, silhouette"] / times["silhouette"]
+    yield Measurement("three cues, how many times faster than OpenCV + NumPy", three, "x", 40, 100)
+    yield Measurement("silhouette, how many times faster than OpenCV + NumPy", alone, "x", 40, 100)
+
+
+def printed_demc(rng: np.random.Generator) -> Iterator[Measurement]:
+    """DE-MC as printed, 500 x 7, three cues, one camera of 320 x 240."""
+    scene = bench_scene("bodytrack")
+    cues = fuse(scene.cues["silhouette"], scene.cues["colour"], scene.cues["boundary"])
+    method, mean = METHODS["demc"], np.clip(scene.poses.mean(axis=0), scene.body.lower, scene.body.upper)
+    dynamics = GaussianWalk(np.full(len(mean), 0.02), scene.body.lower, scene.body.upper)
+    for label, threads in (("one thread", 1), ("all threads", None)):
+        state = method.init(rng, mean, np.full(len(mean), 0.02), method.PRINTED)
+        with limited_threads(threads):
+            seconds = median_seconds(partial(method.step, rng, state, cues, dynamics, method.PRINTED), 3)
+        yield Measurement(f"DE-MC 500 x 7, three cues, one camera, {label}", 1 / seconds, "frames/s", 12, 30)
 
 
 def observation(rng: np.random.Generator) -> Iterator[Measurement]:
     """What a frame costs before its first pose is measured."""
     made = setting()
-    with one_thread():
+    with limited_threads(1):
         seconds = median_seconds(lambda: _prepared(made.likelihood.observe(made.masks)))
     yield Measurement("reducing and packing the masks of 3 cameras, a frame", 1e3 * seconds, "ms")
 
 
 def filters(rng: np.random.Generator) -> Iterator[Measurement]:
-    """One frame of each filter at its working settings, silhouettes of one camera, and the printed DE-MC 500 x 7."""
+    """One frame of each filter at its working settings, silhouettes of one camera."""
     made = setting()
     rig = made.likelihood.rig.subset([0])
     observed = ImageLikelihood(made.body, rig, (REDUCTION,)).observe(made.masks[:1])
     dynamics = GaussianWalk(np.full(len(made.mean), 0.02), made.body.lower, made.body.upper)
-    rows = [(name, method.WORKING, name) for name, method in METHODS.items()]
-    rows.append(("demc", METHODS["demc"].PRINTED, "demc, 500 x 7 as printed"))
-    for name, config, label in rows:
-        method = METHODS[name]
+    for name, method in METHODS.items():
+        config = method.WORKING
         mean = np.clip(made.mean, made.body.lower, made.body.upper)
         state = method.init(rng, mean, np.full(len(mean), 0.02), config)
-        with one_thread():
+        with limited_threads(1):
             seconds = median_seconds(partial(method.step, rng, state, observed, dynamics, config), 3)
-        yield Measurement(f"{label}, silhouette of one camera", 1 / seconds, "frames/s")
+        yield Measurement(f"{name}, silhouette of one camera", 1 / seconds, "frames/s")
 
 
 BENCHMARKS: dict[str, Callable[[np.random.Generator], Iterator[Measurement]]] = {
-    "silhouette": silhouette,
+    "likelihood": likelihood,
+    "demc": printed_demc,
     "observation": observation,
     "filters": filters,
 }
-
-
-def peer_costs(made: Setting, poses: np.ndarray) -> np.ndarray:
-    """The peer's costs (N, C) at the reduced size."""
-    cameras = [camera.scaled(1 / REDUCTION) for camera in made.likelihood.rig]
-    return silhouette_costs(made.body, poses, cameras, [mask[::REDUCTION, ::REDUCTION] for mask in made.masks])
 
 
 def median_seconds(work: Callable[[], object], repeats: int = REPEATS) -> float:
@@ -128,12 +130,12 @@ def median_seconds(work: Callable[[], object], repeats: int = REPEATS) -> float:
 
 
 @contextmanager
-def one_thread() -> Iterator[None]:
-    """Kernels use one thread within this context."""
+def limited_threads(count: int | None) -> Iterator[None]:
+    """Kernels use that many threads within this context; None is all."""
     import numba
 
     before = numba.get_num_threads()
-    numba.set_num_threads(1)
+    numba.set_num_threads(count or before)
     try:
         yield
     finally:
