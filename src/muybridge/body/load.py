@@ -179,7 +179,7 @@ def _inside(where: str) -> Iterator[None]:
     try:
         yield
     except InputError as error:
-        what = f"{where}: {error.what}"
+        what = error.what if error.what.startswith(where) else f"{where}: {error.what}"
         raise InputError(what, expected=error.expected, got=error.got, remedy=error.remedy) from error.__cause__
 
 
