@@ -1,12 +1,14 @@
-"""What `_kernels.contour` means: walk in small steps to the mask's border, and move the pose a little to see the outline move."""
+"""What `_kernels.contour` means: walk in small steps to the mask's border, and move the pose a little to see the
+outline move.
+"""
 
 from __future__ import annotations
 
 import numpy as np
-from reference.silhouette import outlines
 
 from muybridge._kernels.outline import END
 from muybridge.body.model import BodyArrays
+from reference.silhouette import outlines
 
 
 def look(mask: np.ndarray, x: float, y: float) -> float:

@@ -73,20 +73,25 @@ def add_seen(seen, rows, top, offset, packed, histogram):
 
 
 @kernel
-def histogram_distance(histogram, root_reference):
-    """Sum over channels of sqrt(1 - sum_n sqrt(Hr Hk)), (5.4); `root_reference` (LANES,) holds sqrt(Hr), float32."""
+def histogram_distance(histogram, root_reference, roots):
+    """Sum over channels of sqrt(1 - sum_n sqrt(Hr Hk)), (5.4); `root_reference` (LANES,) holds sqrt(Hr), float32.
+
+    roots (LANES,) float32 is room to work in: all roots at once are one vector or two.
+    """
+    for lane in range(LANES):
+        roots[lane] = math.sqrt(np.float32(histogram[lane])) * root_reference[lane]
     scale = 1.0 / math.sqrt(np.float64(histogram[COUNT_LANE]))
     total = 0.0
     for channel in range(CHANNELS):
         overlap = 0.0
         for n in range(channel * BINS, (channel + 1) * BINS):
-            overlap += root_reference[n] * math.sqrt(np.float64(histogram[n]))
+            overlap += roots[n]
         total += math.sqrt(max(0.0, 1.0 - overlap * scale))
     return total
 
 
 @kernel
-def colour_distance(histograms, root_reference, known, by_area):
+def colour_distance(histograms, root_reference, known, by_area, roots):
     """D of (5.5) over the segments seen, alpha_m their share of the visible area, or equal shares as in (5.3).
 
     histograms (K, LANES) int32, root_reference (K, LANES) float32, known (K,) bool: segments that have a reference.
@@ -97,6 +102,6 @@ def colour_distance(histograms, root_reference, known, by_area):
         area = histograms[k, COUNT_LANE]
         if area > 0 and known[k]:
             weight = float(area) if by_area else 1.0
-            total += weight * histogram_distance(histograms[k], root_reference[k])
+            total += weight * histogram_distance(histograms[k], root_reference[k], roots)
             weights += weight
     return total / weights if weights > 0.0 else 0.0

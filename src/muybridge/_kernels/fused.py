@@ -111,6 +111,7 @@ def _one_view(
     last,
     seen,
     histograms,
+    products,
     xs,
     ys,
     square,
@@ -124,7 +125,7 @@ def _one_view(
     )
     out[EDGE_POINTS], out[EDGE_COST], out[COLOUR], out[BOUNDARY] = points, cost, 0.0, 0.0
     if wanted & WANT_COLOUR:
-        out[COLOUR] = colour_distance(histograms, roots, known, by_area)
+        out[COLOUR] = colour_distance(histograms, roots, known, by_area, products)
     low, high = whole_blocks(top, bottom, canvas.shape[1])
     model = inside = 0
     for w in range(word, end):
@@ -188,7 +189,7 @@ def measure(
         canvas = np.zeros((masks.shape[1], rows), np.uint64)
         spare = np.empty(canvas.shape, np.uint64)
         first, last, seen = np.empty(rows, np.int64), np.empty(rows, np.int64), np.empty(rows, np.uint64)
-        histograms = np.zeros((shapes, COLOUR_LANES), np.int32)
+        histograms, products = np.zeros((shapes, COLOUR_LANES), np.int32), np.empty(COLOUR_LANES, np.float32)
         longest = masks.shape[1] * 64 * rows if wanted & WANT_BOUNDARY else 2
         xs, ys, square = np.empty(longest, np.int32), np.empty(longest, np.int32), np.empty((4, SIDE, SIDE))
         start = chunk * LANES
@@ -217,6 +218,7 @@ def measure(
                     last,
                     seen,
                     histograms,
+                    products,
                     xs,
                     ys,
                     square,
