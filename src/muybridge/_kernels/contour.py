@@ -7,6 +7,9 @@ derivative by the pose is the speed of the outline along that normal,
     d(n . u) / d(theta) = n^T J (a x (P - o)),
 
 with J the projection's derivative at the surface point P that makes the outline, and a, o the axis and anchor of the joint.
+
+The other way round, every border point of the mask that no segment covers is matched to the segment whose outline is
+nearest, with limbs preferred to the trunk: an arm that comes out from before the trunk is seen by nothing else.
 """
 
 from __future__ import annotations
@@ -25,6 +28,7 @@ CAMERA, SEGMENT, DISTANCE, METRES, NORMAL, PIXEL, ALONG, WIDTH, DEPTH, ALIGNMENT
 ROW_COLUMNS = 12
 NEIGHBOUR = 1.5  # pixels outwards; a point whose neighbour there lies in another segment is no border
 STEP = 0.5  # pixels between looks at the mask
+UNCOVERED = 1.5  # pixels outside every segment from which a border point of the mask counts as unexplained
 CAP_ANGLES = (-1.05, -0.52, 0.0, 0.52, 1.05)  # radians round the axis direction
 
 
@@ -122,6 +126,15 @@ def add_row(camera, c, k, s, affects, axes, anchors, point, nx, ny, x, y, along,
     distance = border_distance(mask, x, y, nx, ny, reach)
     if not math.isfinite(distance):
         return count
+    alignment = border_alignment(mask, x + distance * nx, y + distance * ny, nx, ny)
+    return write_row(camera, c, s, affects, axes, anchors, point, nx, ny, x, y, along, width, depth, distance, alignment,
+                     rows, slopes, count)
+
+
+@kernel
+def write_row(camera, c, s, affects, axes, anchors, point, nx, ny, x, y, along, width, depth, distance, alignment, rows,
+              slopes, count):
+    """Write a residual and its derivative by every degree of freedom; the new count."""
     px = camera[11] * point[0] + camera[12] * point[1] + camera[13] * point[2] + camera[20]
     py = camera[14] * point[0] + camera[15] * point[1] + camera[16] * point[2] + camera[21]
     pz = camera[17] * point[0] + camera[18] * point[1] + camera[19] * point[2] + camera[22]
@@ -145,16 +158,18 @@ def add_row(camera, c, k, s, affects, axes, anchors, point, nx, ny, x, y, along,
     rows[count, METRES] = 1.0 / max(1e-9, math.sqrt(g0 * g0 + g1 * g1 + g2 * g2))
     rows[count, NORMAL], rows[count, NORMAL + 1], rows[count, PIXEL], rows[count, PIXEL + 1] = nx, ny, x, y
     rows[count, ALONG], rows[count, WIDTH], rows[count, DEPTH] = along, width, depth
-    rows[count, ALIGNMENT] = border_alignment(mask, x + distance * nx, y + distance * ny, nx, ny)
+    rows[count, ALIGNMENT] = alignment
     return count + 1
 
 
 @kernel
-def contour_rows(pose, parent, fixed, axis, dof, shaped, ends, half_axes, affects, cameras, masks, reaches, side_points,
-                 rows, slopes):
+def contour_rows(pose, parent, fixed, axis, dof, shaped, ends, half_axes, affects, cameras, masks, borders, border_counts,
+                 stiffness, reaches, side_points, rows, slopes):
     """Residuals of one pose (D,) in all cameras.
 
-    masks (C, H, W) float32 in [0, 1]; reaches (C,) pixels; affects (S, D) bool: whether a joint moves a segment.
+    masks (C, H, W) float32 in [0, 1]; borders (C, B, 2) pixels, of which border_counts (C,) are used; stiffness (S,), by which
+    a segment's distance to a border point is multiplied before the nearest is chosen; reaches (C,) pixels; affects (S, D)
+    bool: whether a joint moves a segment.
     Fills rows (R, ROW_COLUMNS) and slopes (R, D), pixels per metre and per radian; returns how many.
     """
     count = 0
@@ -185,7 +200,47 @@ def contour_rows(pose, parent, fixed, axis, dof, shaped, ends, half_axes, affect
                                         d1 + t * (d2 - d1), outlines, masks[c], reaches[c], rows, slopes, count)
             count = _caps(cameras[c], c, k, s, frames[s], ends[s], half_axes[s], affects, axes, anchors, outlines, masks[c],
                           reaches[c], point, rows, slopes, count)
+        for b in range(border_counts[c]):
+            count = _uncovered(cameras[c], c, borders[c, b, 0], borders[c, b, 1], frames, shaped, ends, half_axes, affects,
+                               axes, anchors, outlines, stiffness, reaches[c], first, second, point, rows, slopes, count)
     return count
+
+
+@kernel
+def _uncovered(camera, c, x, y, frames, shaped, ends, half_axes, affects, axes, anchors, outlines, stiffness, reach, first,
+               second, point, rows, slopes, count):
+    """Residual of one border point of the mask that lies outside every segment; the new count."""
+    best, nearest, gap, place, nx, ny = np.inf, -1, 0.0, 0.0, 0.0, 0.0
+    for k in range(shaped.shape[0]):
+        out = outlines[k]
+        if out[KIND] == 0.0:
+            continue
+        dx, dy = out[END + 6] - out[END], out[END + 7] - out[END + 1]
+        square = dx * dx + dy * dy
+        t = 0.0
+        if out[KIND] == 2.0 and square > 1e-9:
+            t = min(1.0, max(0.0, ((x - out[END]) * dx + (y - out[END + 1]) * dy) / square))
+        elif out[END + 8] + out[END + 10] > out[END + 2] + out[END + 4]:
+            t = 1.0
+        vx, vy = x - out[END] - t * dx, y - out[END + 1] - t * dy
+        length = math.sqrt(vx * vx + vy * vy)
+        if length * stiffness[shaped[k]] > best + 60.0 * stiffness[shaped[k]] or length < 1e-9:
+            continue
+        vx, vy = vx / length, vy / length
+        away = length - (1.0 - t) * support(out, END, vx, vy) - t * support(out, END + 6, vx, vy)
+        if away <= 0.0:
+            return count  # covered
+        if away * stiffness[shaped[k]] < best:
+            best, nearest, gap, place, nx, ny = away * stiffness[shaped[k]], k, away, t, vx, vy
+    if nearest < 0 or gap < UNCOVERED or gap > reach or count >= rows.shape[0]:
+        return count
+    s = shaped[nearest]
+    w1, d1 = surface_point(camera, frames[s], ends[s, 0], half_axes[s, 0], nx, ny, first)
+    w2, d2 = surface_point(camera, frames[s], ends[s, 1], half_axes[s, 1], nx, ny, second)
+    for j in range(3):
+        point[j] = first[j] + place * (second[j] - first[j])
+    return write_row(camera, c, s, affects, axes, anchors, point, nx, ny, x - gap * nx, y - gap * ny, place,
+                     w1 + place * (w2 - w1), d1 + place * (d2 - d1), gap, 1.0, rows, slopes, count)
 
 
 @kernel

@@ -14,6 +14,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+import cv2
 import numpy as np
 
 from muybridge._kernels import contour as kernel
@@ -21,6 +22,9 @@ from muybridge.body.model import Body, BodyArrays
 
 SIDE_POINTS = 8  # along each side line of a segment
 REACH = 1.5  # the border is searched up to this many spreads away
+BORDER_SPACING = 6  # pixels between the mask's own border points
+SHORTEST_BORDER = 24  # pixels; a shorter outline is speckle
+TRUNK_STIFFNESS = 3.0  # a limb three times as far is the likelier owner of an unexplained piece of mask
 
 
 class ContourRows(NamedTuple):
@@ -62,6 +66,36 @@ class NormalEquations(NamedTuple):
     points: int
 
 
+class Borders(NamedTuple):
+    """Points on the masks' borders: points (C, B, 2) float64, reduced pixels; counts (C,) int64, how many are used."""
+
+    points: np.ndarray
+    counts: np.ndarray
+
+
+def mask_borders(shares: np.ndarray, spacing: int = BORDER_SPACING) -> Borders:
+    """Every `spacing`-th pixel along the borders of masks (C, H, W) float32."""
+    found = []
+    for share in shares:
+        contours, _ = cv2.findContours((share >= 0.5).view(np.uint8), cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
+        kept = [line.reshape(-1, 2)[::spacing] for line in contours if len(line) >= SHORTEST_BORDER]
+        found.append(np.concatenate(kept) if kept else np.zeros((0, 2), np.int32))
+    points = np.zeros((len(found), max(1, *map(len, found)) if found else 1, 2))
+    for c, line in enumerate(found):
+        points[c, : len(line)] = line
+    return Borders(points, np.array([len(line) for line in found], np.int64))
+
+
+def no_borders(cameras: int) -> Borders:
+    """Nothing to be explained."""
+    return Borders(np.zeros((cameras, 1, 2)), np.zeros(cameras, np.int64))
+
+
+def stiffness(body: Body) -> np.ndarray:
+    """(S,) float64: how much further than it is a segment counts from a border point that nothing covers."""
+    return np.array([TRUNK_STIFFNESS if segment.block == "root" else 1.0 for segment in body.segments])
+
+
 def moved_by(arrays: BodyArrays, dofs: int) -> np.ndarray:
     """(S, D) bool: whether a degree of freedom moves a segment."""
     moved = np.zeros((len(arrays.parent), dofs), bool)
@@ -74,7 +108,7 @@ def moved_by(arrays: BodyArrays, dofs: int) -> np.ndarray:
     return moved
 
 
-def contour_rows(body: Body, cameras: np.ndarray, shares: np.ndarray, pose: np.ndarray, spread: float,
+def contour_rows(body: Body, cameras: np.ndarray, shares: np.ndarray, borders: Borders, pose: np.ndarray, spread: float,
                  side_points: int = SIDE_POINTS) -> ContourRows:
     """Residuals of one pose.
 
@@ -82,18 +116,19 @@ def contour_rows(body: Body, cameras: np.ndarray, shares: np.ndarray, pose: np.n
     ----------
     cameras : (C, CAMERA_COLUMNS) float64, of the reduced pictures
     shares : (C, H, W) float32, share of foreground in [0, 1]
+    borders : their borders
     pose : (D,) float64, metres and radians
     spread : float, metres
         The border is searched up to 1.5 spreads away from each point.
     """
     arrays, dofs = body.arrays, len(pose)
-    capacity = len(cameras) * len(arrays.shaped) * (2 * side_points + 12)
+    capacity = len(cameras) * len(arrays.shaped) * (2 * side_points + 12) + int(borders.counts.sum())
     rows, slopes = np.empty((capacity, kernel.ROW_COLUMNS)), np.empty((capacity, dofs))
     focal = np.sqrt(cameras[:, 0] * cameras[:, 1])
     root = cameras[:, 11:20].reshape(-1, 3, 3)[:, 2] @ pose[:3] + cameras[:, 22]
     reaches = np.clip(REACH * spread * focal / np.maximum(root, 0.1), 2.0, 0.5 * max(shares.shape[1:]))
-    count = kernel.contour_rows(np.ascontiguousarray(pose, np.float64), *arrays, moved_by(arrays, dofs), cameras, shares, reaches,
-                                side_points, rows, slopes)
+    count = kernel.contour_rows(np.ascontiguousarray(pose, np.float64), *arrays, moved_by(arrays, dofs), cameras, shares,
+                                borders.points, borders.counts, stiffness(body), reaches, side_points, rows, slopes)
     rows, slopes = rows[:count], slopes[:count]
     metres = rows[:, kernel.METRES]
     return ContourRows(

@@ -15,11 +15,13 @@ from muybridge._kernels.silhouette import silhouette_counts
 from muybridge.body.model import Body
 from muybridge.cameras.model import Rig
 from muybridge.errors import InputError
-from muybridge.likelihood.contour import SIDE_POINTS, ContourRows, NormalEquations, contour_rows, robust_weights
+from muybridge.likelihood.contour import SIDE_POINTS, Borders, ContourRows, NormalEquations, contour_rows, mask_borders, no_borders, robust_weights
 from muybridge.likelihood.pictures import camera_rows, reduce_mask, stack_masks
 
 #: No contour is believed better than this, metres, however well it fits.
 MINIMUM_SD = 0.002
+#: Unexplained pieces of mask pull limbs only while the search is coarse: at the end they would bias what already fits.
+UNCOVERED_SPREAD = 0.055  # metres
 
 
 @dataclass(frozen=True)
@@ -96,6 +98,11 @@ class Observation:
         """(C,) foreground pixels of the reduced masks."""
         return np.array([int(np.count_nonzero(share >= 0.5)) for share in self.shares])
 
+    @cached_property
+    def borders(self) -> Borders:
+        """The masks' borders, for what no segment covers."""
+        return mask_borders(self.shares)
+
     def costs(self, poses: np.ndarray) -> np.ndarray:
         """Two-sided silhouette cost (Sedai 2013, eq. 12) of poses (N, D) in each camera, (N, C) in [0, 1]."""
         poses = np.ascontiguousarray(np.atleast_2d(poses), np.float64)
@@ -111,7 +118,8 @@ class Observation:
 
     def contour(self, pose: np.ndarray, spread: float, side_points: int = SIDE_POINTS) -> ContourRows:
         """Contour residuals of one pose (D,); see `likelihood.contour`."""
-        return contour_rows(self.model.body, self.model.cameras, self.shares, pose, spread, side_points)
+        borders = self.borders if spread >= UNCOVERED_SPREAD else no_borders(len(self.shares))
+        return contour_rows(self.model.body, self.model.cameras, self.shares, borders, pose, spread, side_points)
 
     def normal_equations(self, pose: np.ndarray, spread: float) -> NormalEquations:
         """Curvature and gradient of the contour's log likelihood at a pose (D,), robust beyond `spread` metres."""

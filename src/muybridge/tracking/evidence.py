@@ -16,10 +16,11 @@ from muybridge.cameras.model import Camera, Rig
 from muybridge.errors import InputError
 from muybridge.io.job import CameraInput, Job, background_config
 from muybridge.io.video import open_masks, open_pictures
-from muybridge.segmentation import BACKGROUND_MODELS, CleaningConfig, Segmenter, ShadowConfig, reduce_image
+from muybridge.segmentation import BACKGROUND_MODELS, CleaningConfig, Segmenter, ShadowConfig, clean, reduce_image
 
 MARGIN_M = 0.45  # metres round the expected joints in which the person is looked for
 MEDIAN = 5  # pixels of a ready-made mask; takes speckle away
+SMALLEST, GAP = 25, 8.0  # reduced pixels: of a piece of mask, and between it and the person
 TRAINING_FRAMES = 100  # at most, of the empty scene
 
 
@@ -41,7 +42,7 @@ class Eye:
         """
         box = None if expected is None else self._box(expected)
         if self.segmenter is None:
-            return _inside(image, box)
+            return _connected(_inside(image, box), self.reduction)
         if box is None:
             return self.segmenter.apply(image)
         small = tuple((v + 0.5) / self.reduction - 0.5 for v in box)
@@ -72,6 +73,11 @@ def _inside(mask: np.ndarray, box: tuple[int, int, int, int] | None, median: int
         part = np.ascontiguousarray(mask[top:bottom, left:right])
         out[top:bottom, left:right] = cv2.medianBlur(part.view(np.uint8), median).view(bool) if median > 1 else part
     return out
+
+
+def _connected(mask: np.ndarray, reduction: int) -> np.ndarray:
+    """A ready-made mask without pieces that lie apart from the person."""
+    return clean(mask, CleaningConfig(median=1, largest_hole=0, smallest_fragment=SMALLEST * reduction**2, gap=GAP * reduction))
 
 
 @dataclass
