@@ -95,6 +95,17 @@ def test_edges_are_those_looked_up_one_by_one(place):
             assert results[n, c, fused.EDGE_COST] == pytest.approx(total, abs=1e-5)
 
 
+@pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf, 1e300])
+def test_a_pose_that_is_no_pose_is_not_drawn(value):
+    body, poses, view = _scene("middle", 8)
+    poses[0, 0], poses[1, 2], poses[1, 3] = value, value, value
+    masks = np.ones((2, 72, 96), bool)
+    counts = silhouette_counts(poses, *body.arrays, view, np.array([pack_rows(m) for m in masks]))
+    assert not counts[:2].any() and (len(poses) == 2 or counts[2:].all())
+    boundary = BoundaryInput(np.zeros((2, 2, 16, 16)), 100)
+    assert np.all(measure_cues(poses, body.arrays, view, (96, 72), boundary=boundary)[:2, :, fused.BOUNDARY] == np.inf)
+
+
 def test_all_at_once_is_each_alone_and_threads_change_nothing():
     import numba
 

@@ -25,6 +25,7 @@ CAMERA_COLUMNS = 25
 #: depth), then for each of the two sides the normal and the tangent points on both ends, then first and last y.
 KIND, END, SIDE, TOP, BOTTOM, OUTLINE_COLUMNS = 0, 1, 13, 25, 26, 27
 NEAREST = 0.05  # metres; what is nearer than this, or behind, is not drawn
+FARTHEST = 1e9  # pixels
 SMALLEST = 0.01  # square pixels; keeps ellipses seen edge on from vanishing
 UNSOLVED = 3.0  # kind of an outline between two steps of the solution
 CLOSE = 1e-3  # radians; Newton's step squares the error: the next would move a 50 pixel end by 1e-4 pixels at most
@@ -98,7 +99,9 @@ def outline_lanes(camera, frame, ends, half_axes, kinds, ellipses, sides):
         if kinds[lane] == UNSOLVED:
             _bisect_tangents(ellipses, sides, lane)
             kinds[lane] = 2.0
-        if not (ellipses[5 * LANES + lane] > NEAREST and ellipses[11 * LANES + lane] > NEAREST):
+        before = ellipses[5 * LANES + lane] > NEAREST and ellipses[11 * LANES + lane] > NEAREST
+        # rows are numbers: a pose that is not finite is not drawn
+        if not (before and sides[12 * LANES + lane] > -FARTHEST and sides[13 * LANES + lane] < FARTHEST):
             kinds[lane] = 0.0
 
 

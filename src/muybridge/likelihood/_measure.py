@@ -79,7 +79,7 @@ def _run(
     edge_maps = np.zeros((count, 1, 1), np.float32) if edge_maps is None else edge_maps
     out = np.empty((len(poses), count, fused.RESULT_COLUMNS))
     histograms = np.empty((len(poses) if keep_histograms else 0, count, shapes, LANES), np.int32)
-    fused.measure(
+    fused.measure(  # type: ignore[call-arg]
         poses,
         *arrays,
         cameras,

@@ -92,7 +92,7 @@ def _camera(joints: np.ndarray) -> Camera:
 def time_likelihood(body_name: str = "bodytrack", particles: int = 512, repeats: int = 7) -> list[Timing]:
     """Times of the cues alone and together, and of the peer with the same three cues."""
     scene = bench_scene(body_name, particles)
-    three = fuse(*(scene.cues[name] for name in ("silhouette", "colour", "boundary")))
+    three = fuse(scene.cues["silhouette"], scene.cues["colour"], scene.cues["boundary"])
     everything = Fusion(tuple(scene.cues.values()), (1.0,) * len(scene.cues))
     subjects = {**scene.cues, "silhouette + colour + boundary": three, "all four": everything}
     threads, opencv_threads = numba.get_num_threads(), cv2.getNumThreads()
