@@ -7,7 +7,8 @@ import pytest
 
 from muybridge._kernels.chain import segment_frames
 from muybridge._kernels.draw import outline_spans
-from muybridge._kernels.outline import KIND, row_span
+from muybridge._kernels.outline import KIND, OUTLINE_COLUMNS, outlines_of, row_span
+from muybridge.body import Body, Segment, Shape
 from reference import chain as slow_chain
 from reference import outline as slow
 from reference.scene import WIDE, camera, count, random_poses, rows, standing
@@ -90,22 +91,28 @@ def test_behind_the_camera_nothing_is_drawn(distance):
 
 @pytest.mark.parametrize("ends", ["round", "flat", "sphere"])
 def test_any_cone_is_the_sampled_hull_to_half_a_pixel(ends):
-    """Radii of 2 to 15 cm, any direction (flat ends also edge on), elliptical, 4 m away: the first-order ellipse of a
-    rounded end is off by its share of the depth squared, (0.15 / 4)^2 of 15 pixels.
-    """
-    from muybridge._kernels.outline import OUTLINE_COLUMNS, outlines_of
-    from muybridge.body import Body, Segment, Shape
+    """Radii of 2 to 15 cm, any direction (flat ends also edge on), elliptical, 4 m away.
 
+    The first-order ellipse of a rounded end is off by its share of the depth squared, (0.15 / 4)^2 of 15 pixels.
+    """
     rng, view = np.random.default_rng(21), camera(0.0, (320, 240), distortion=WIDE)
     worst = 0.0
     for _ in range(count(120)):
-        tip = (0.0, 0.0, 0.0 if ends == "sphere" else float(rng.uniform(0.1, 0.5)))
-        radii = (float(rng.uniform(0.02, 0.15)),) * 2 if ends == "sphere" else tuple(map(float, rng.uniform(0.02,
-        0.15, 2))) shape = Shape((0, 0, 0), tip, radii, tuple(map(float, rng.uniform(0.5, 1.0, 2))), round_ends=ends
-        == "round") arrays = Body("cone", (Segment("cone", shape=shape),)).arrays rotation, _ =
-        np.linalg.qr(rng.normal(size=(3, 3))) frame = np.column_stack([rotation, rng.uniform(-0.6, 0.6, 3)]) out =
-        np.empty((1, OUTLINE_COLUMNS)) outlines_of(rows(view)[0], frame[None], arrays.shaped, arrays.ends,
-        arrays.half_axes, out) corners = slow.hull(view, frame, arrays.ends[0], arrays.half_axes[0]) for y in
-        range(int(np.ceil(corners[:, 1].min() + 0.5)), int(corners[:, 1].max() - 0.5) + 1, 2):
+        arrays = Body("cone", (Segment("cone", shape=_random_shape(rng, ends)),)).arrays
+        rotation, _ = np.linalg.qr(rng.normal(size=(3, 3)))
+        frame = np.column_stack([rotation, rng.uniform(-0.6, 0.6, 3)])
+        out = np.empty((1, OUTLINE_COLUMNS))
+        outlines_of(rows(view)[0], frame[None], arrays.shaped, arrays.ends, arrays.half_axes, out)
+        corners = slow.hull(view, frame, arrays.ends[0], arrays.half_axes[0])
+        for y in range(int(np.ceil(corners[:, 1].min() + 0.5)), int(corners[:, 1].max() - 0.5) + 1, 2):
             worst = max(worst, _distance_to_span(corners, *row_span(out[0], float(y)), y))
     assert worst < 0.5
+
+
+def _random_shape(rng, ends):
+    length = 0.0 if ends == "sphere" else rng.uniform(0.1, 0.5)
+    first, second = rng.uniform(0.02, 0.15, 2)
+    radii = (first, first) if ends == "sphere" else (first, second)
+    return Shape(
+        (0.0, 0.0, 0.0), (0.0, 0.0, length), radii, tuple(rng.uniform(0.5, 1.0, 2)), round_ends=ends == "round"
+    )
