@@ -150,6 +150,14 @@ class TestScaling:
             below = name.endswith(("knee", "ankle"))
             np.testing.assert_allclose(shift, [0, 0, -0.0425 if below else 0.0], atol=1e-12)
 
+    def test_an_offset_between_joints_is_a_length_too(self) -> None:
+        body = named_body("person")
+        moved = body.scaled(lengths={"hip_width": 1.2}).joints(np.zeros(33)) - body.joints(np.zeros(33))
+        for name, shift in zip(body.joint_names, moved, strict=True):
+            sideways = {"left": -0.018, "right": 0.018}[name.split("_")[0]] if "_" in name and name != "head_top" else 0
+            leg = name.endswith(("hip", "knee", "ankle"))
+            np.testing.assert_allclose(shift, [sideways if leg else 0.0, 0, 0], atol=1e-12)
+
     def test_a_joints_offset_is_part_of_its_segments_length(self) -> None:
         body = named_body("du-2005")
         longer = body.scaled(lengths={"lower_arm_and_hand": 1.2})
