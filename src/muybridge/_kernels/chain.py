@@ -12,6 +12,7 @@ import numpy as np
 
 from muybridge._kernels._jit import exact_kernel, kernel
 
+LARGEST = 1e7  # metres and radians; beyond it, or not a number, a pose is none
 LANES = 16  # poses that are posed and projected together: two vectors of eight
 #: pi / 2 in three parts, the first two with 26 zero bits at their ends, so that multiples up to 2^26 are exact.
 _HALF_PI_1, _HALF_PI_2, _HALF_PI_3 = 1.57079625129699707031, 7.54978941586159635335e-08, 5.39030285815811905290e-15
@@ -63,9 +64,14 @@ def load_lanes(poses, start, lanes, cosines, sines):
     for lane in range(LANES):
         n = min(start + lane, poses.shape[0] - 1)
         for d in range(poses.shape[1]):
-            lanes[d, lane] = poses[n, d]
+            lanes[d, lane] = poses[n, d] if abs(poses[n, d]) < LARGEST else 0.0
     size = lanes.shape[0] * LANES
     cosines_and_sines(lanes.reshape(size), cosines.reshape(size), sines.reshape(size))
+    for lane in range(LANES):
+        n = min(start + lane, poses.shape[0] - 1)
+        for d in range(poses.shape[1]):
+            if not abs(poses[n, d]) < LARGEST:
+                lanes[0, lane] = np.nan  # no place: nothing of it is seen
 
 
 @kernel

@@ -196,7 +196,8 @@ def _newton(ex, ey, nxx, nxy, nyy, mx, my):
     """One step towards the unit vector m with e m + sqrt(m^T N m) = 1; returns m and the size of the step, radians."""
     px, py = nxx * mx + nxy * my, nxy * mx + nyy * my
     h = math.sqrt(mx * px + my * py)
-    step = (1.0 - h - ex * mx - ey * my) / (ey * mx - ex * my + (py * mx - px * my) / h)
+    slope = ey * mx - ex * my + (py * mx - px * my) / h
+    step = (1.0 - h - ex * mx - ey * my) / (slope if slope != 0.0 else 1e-9)
     step = max(-1.0, min(1.0, step))
     shrink = 1.0 / (1.0 + 0.25 * step * step)  # a turn by 2 atan(step / 2) needs no root
     cosine, sine = (1.0 - 0.25 * step * step) * shrink, step * shrink
@@ -229,7 +230,7 @@ def _tangent_lanes(ellipses, kinds, sides):
         )
         l00, l10, l11, i00, i10, i11, ex, ey, nxx, nxy, nyy = _whiten(axx, axy, ayy, bxx, bxy, byy, bx - ax, by - ay)
         distance = max(1e-9, math.sqrt(ex * ex + ey * ey))
-        ux, uy = ex / distance, ey / distance
+        ux, uy = ex / distance if distance > 1e-9 else 1.0, ey / distance if distance > 1e-9 else 0.0
         along = math.sqrt(nxx * ux * ux + 2.0 * nxy * ux * uy + nyy * uy * uy)
         across = math.sqrt(nxx * uy * uy - 2.0 * nxy * ux * uy + nyy * ux * ux)
         sine = max(-0.999, min(0.999, (1.0 - across) / distance))
