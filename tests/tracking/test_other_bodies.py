@@ -1,8 +1,8 @@
 """Not only people: a dog and a robot arm are found in their silhouettes and followed, by the same code and settings.
 
 Masks are drawn from the bodies themselves, so what is left is how well a pose can be told from outlines of whole
-pixels. Predicted: while following, half the joints are within one pixel of the reduced masks (8.6 and 14 mm); the start,
-which knows nothing, finds which way a dog faces. Measured over 8 seeds: median joint 2 to 8 mm (dog) and 1 to 3 mm (arm)
+pixels. Predicted: while following, half the joints are within a pixel of the reduced masks (8.6 and 14 mm); the start,
+which knows nothing, finds which way a dog faces. Measured, 8 seeds: median joint 2 to 8 mm (dog) and 1-3 mm (arm)
 after five frames, the start's nose at most 59 mm off. A dog's single joints are up to 0.2 m off where legs hide each
 other, which is why the mean is not what is bounded.
 """
