@@ -24,7 +24,7 @@ SIDE_POINTS = 8  # along each side line of a segment
 REACH = 1.5  # the border is searched up to this many spreads away
 BORDER_SPACING = 6  # pixels between the mask's own border points
 SHORTEST_BORDER = 24  # pixels; a shorter outline is speckle
-TRUNK_STIFFNESS = 3.0  # a limb three times as far is the likelier owner of an unexplained piece of mask
+STIFFER, STIFFEST = 1.0, 3.0  # for every segment that hangs below; at most
 
 
 class ContourRows(NamedTuple):
@@ -92,8 +92,17 @@ def no_borders(cameras: int) -> Borders:
 
 
 def stiffness(body: Body) -> np.ndarray:
-    """(S,) float64: how much further than it is a segment counts from a border point that nothing covers."""
-    return np.array([TRUNK_STIFFNESS if segment.block == "root" else 1.0 for segment in body.segments])
+    """(S,) float64: how much further than it is a segment counts from a border point that nothing covers.
+
+    What hangs at the end of a chain moves most freely: a hand counts once, an upper arm with two parts below it twice.
+    """
+    parent, below = body.arrays.parent, np.zeros(len(body.segments))
+    for segment in body.arrays.shaped[::-1]:
+        ancestor = parent[segment]
+        while ancestor >= 0:
+            below[ancestor] += 1
+            ancestor = parent[ancestor]
+    return np.minimum(1.0 + STIFFER * below, STIFFEST)
 
 
 def moved_by(arrays: BodyArrays, dofs: int) -> np.ndarray:
