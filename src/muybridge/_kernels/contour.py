@@ -6,7 +6,8 @@ derivative by the pose is the speed of the outline along that normal,
 
     d(n . u) / d(theta) = n^T J (a x (P - o)),
 
-with J the projection's derivative at the surface point P that makes the outline, and a, o the axis and anchor of the joint.
+with J the projection's derivative at the surface point P that makes the outline, and a, o the axis and anchor of the
+joint.
 
 The other way round, every border point of the mask that no segment covers is matched to the segment whose outline is
 nearest, with limbs preferred to the trunk: an arm that comes out from before the trunk is seen by nothing else.
@@ -22,8 +23,8 @@ from muybridge._kernels._jit import kernel
 from muybridge._kernels.chain import dof_screws
 from muybridge._kernels.outline import END, KIND, OUTLINE_COLUMNS, SIDE, outlines_of, project, row_span, support
 
-#: Columns of a row's facts: camera, segment, distance d, metres per pixel at the point, normal x, y, pixel x, y, place along
-#: the segment (0 base, 1 tip), pixels per log width, pixels per log depth, alignment of the mask's border with the normal.
+#: Columns of a row's facts: camera, segment, distance d, metres per pixel at the point, normal x, y, pixel x, y, place
+#: along the segment (0 base, 1 tip), pixels per log width, pixels per log depth, alignment of border and normal.
 CAMERA, SEGMENT, DISTANCE, METRES, NORMAL, PIXEL, ALONG, WIDTH, DEPTH, ALIGNMENT = 0, 1, 2, 3, 4, 6, 8, 9, 10, 11
 ROW_COLUMNS = 12
 NEIGHBOUR = 1.5  # pixels outwards; a point whose neighbour there lies in another segment is no border
@@ -49,7 +50,7 @@ def look(mask, x, y):
 
 @kernel
 def border_distance(mask, x, y, nx, ny, reach):
-    """Signed distance along (nx, ny) to the nearest place where the mask falls through one half; `inf` if none in reach."""
+    """Signed distance along (nx, ny) to where the mask next falls through one half; `inf` if that is out of reach."""
     here = look(mask, x, y)
     sense = 1.0 if here >= 0.5 else -1.0
     before, travelled = here, 0.0
@@ -99,12 +100,18 @@ def surface_point(camera, frame, end, half_axes, nx, ny, point):
     _, _, ux, uy, uz, vx, vy, vz = project(camera, x, y, z)
     g = np.empty(3)
     for i in range(3):
-        g[i] = (nx * ux + ny * vx) * camera[11 + i] + (nx * uy + ny * vy) * camera[14 + i] + (nx * uz + ny * vz) * camera[17 + i]
+        g[i] = (
+            (nx * ux + ny * vx) * camera[11 + i]
+            + (nx * uy + ny * vy) * camera[14 + i]
+            + (nx * uz + ny * vz) * camera[17 + i]
+        )
     total = 1e-12
     share = np.zeros(3)
     for j in range(3):
         for i in range(3):
-            share[j] += g[i] * (frame[i, 0] * half_axes[j, 0] + frame[i, 1] * half_axes[j, 1] + frame[i, 2] * half_axes[j, 2])
+            share[j] += g[i] * (
+                frame[i, 0] * half_axes[j, 0] + frame[i, 1] * half_axes[j, 1] + frame[i, 2] * half_axes[j, 2]
+            )
         total += share[j] * share[j]
     length = math.sqrt(total)
     for j in range(3):
@@ -116,8 +123,29 @@ def surface_point(camera, frame, end, half_axes, nx, ny, point):
 
 
 @kernel
-def add_row(camera, c, k, s, affects, axes, anchors, point, nx, ny, x, y, along, width, depth, outlines, mask, reach,
-            rows, slopes, count):
+def add_row(
+    camera,
+    c,
+    k,
+    s,
+    affects,
+    axes,
+    anchors,
+    point,
+    nx,
+    ny,
+    x,
+    y,
+    along,
+    width,
+    depth,
+    outlines,
+    mask,
+    reach,
+    rows,
+    slopes,
+    count,
+):
     """Append the residual at one outline point unless another segment hides it or no border is near; the new count."""
     if count >= rows.shape[0] or inside_another(outlines, k, x + NEIGHBOUR * nx, y + NEIGHBOUR * ny):
         return count
@@ -127,13 +155,51 @@ def add_row(camera, c, k, s, affects, axes, anchors, point, nx, ny, x, y, along,
     if not math.isfinite(distance):
         return count
     alignment = border_alignment(mask, x + distance * nx, y + distance * ny, nx, ny)
-    return write_row(camera, c, s, affects, axes, anchors, point, nx, ny, x, y, along, width, depth, distance, alignment,
-                     rows, slopes, count)
+    return write_row(
+        camera,
+        c,
+        s,
+        affects,
+        axes,
+        anchors,
+        point,
+        nx,
+        ny,
+        x,
+        y,
+        along,
+        width,
+        depth,
+        distance,
+        alignment,
+        rows,
+        slopes,
+        count,
+    )
 
 
 @kernel
-def write_row(camera, c, s, affects, axes, anchors, point, nx, ny, x, y, along, width, depth, distance, alignment, rows,
-              slopes, count):
+def write_row(
+    camera,
+    c,
+    s,
+    affects,
+    axes,
+    anchors,
+    point,
+    nx,
+    ny,
+    x,
+    y,
+    along,
+    width,
+    depth,
+    distance,
+    alignment,
+    rows,
+    slopes,
+    count,
+):
     """Write a residual and its derivative by every degree of freedom; the new count."""
     px = camera[11] * point[0] + camera[12] * point[1] + camera[13] * point[2] + camera[20]
     py = camera[14] * point[0] + camera[15] * point[1] + camera[16] * point[2] + camera[21]
@@ -152,8 +218,11 @@ def write_row(camera, c, s, affects, axes, anchors, point, nx, ny, x, y, along, 
         slopes[count, d] = 0.0
         if affects[s, d]:
             r0, r1, r2 = point[0] - anchors[d, 0], point[1] - anchors[d, 1], point[2] - anchors[d, 2]
-            slopes[count, d] = (g0 * (axes[d, 1] * r2 - axes[d, 2] * r1) + g1 * (axes[d, 2] * r0 - axes[d, 0] * r2)
-                                + g2 * (axes[d, 0] * r1 - axes[d, 1] * r0))
+            slopes[count, d] = (
+                g0 * (axes[d, 1] * r2 - axes[d, 2] * r1)
+                + g1 * (axes[d, 2] * r0 - axes[d, 0] * r2)
+                + g2 * (axes[d, 0] * r1 - axes[d, 1] * r0)
+            )
     rows[count, CAMERA], rows[count, SEGMENT], rows[count, DISTANCE] = c, s, distance
     rows[count, METRES] = 1.0 / max(1e-9, math.sqrt(g0 * g0 + g1 * g1 + g2 * g2))
     rows[count, NORMAL], rows[count, NORMAL + 1], rows[count, PIXEL], rows[count, PIXEL + 1] = nx, ny, x, y
@@ -163,14 +232,32 @@ def write_row(camera, c, s, affects, axes, anchors, point, nx, ny, x, y, along, 
 
 
 @kernel
-def contour_rows(pose, parent, fixed, axis, dof, shaped, ends, half_axes, affects, cameras, masks, borders, border_counts,
-                 stiffness, reaches, side_points, rows, slopes):
+def contour_rows(
+    pose,
+    parent,
+    fixed,
+    axis,
+    dof,
+    shaped,
+    ends,
+    half_axes,
+    affects,
+    cameras,
+    masks,
+    borders,
+    border_counts,
+    stiffness,
+    reaches,
+    side_points,
+    rows,
+    slopes,
+):
     """Residuals of one pose (D,) in all cameras.
 
-    masks (C, H, W) float32 in [0, 1]; borders (C, B, 2) pixels, of which border_counts (C,) are used; stiffness (S,), by which
-    a segment's distance to a border point is multiplied before the nearest is chosen; reaches (C,) pixels; affects (S, D)
-    bool: whether a joint moves a segment.
-    Fills rows (R, ROW_COLUMNS) and slopes (R, D), pixels per metre and per radian; returns how many.
+    masks (C, H, W) float32 in [0, 1]; borders (C, B, 2) pixels, of which border_counts (C,) are used; stiffness (S,),
+    by which a segment's distance to a border point is multiplied before the nearest is chosen; reaches (C,) pixels;
+    affects (S, D) bool: whether a joint moves a segment. Fills rows (R, ROW_COLUMNS) and slopes (R, D), pixels per
+    metre and per radian; returns how many.
     """
     count = 0
     frames = np.empty((parent.shape[0], 3, 4))
@@ -196,19 +283,97 @@ def contour_rows(pose, parent, fixed, axis, dof, shaped, ends, half_axes, affect
                         y = out[base + 3] + t * (out[base + 5] - out[base + 3])
                         for j in range(3):
                             point[j] = first[j] + t * (second[j] - first[j])
-                        count = add_row(cameras[c], c, k, s, affects, axes, anchors, point, nx, ny, x, y, t, w1 + t * (w2 - w1),
-                                        d1 + t * (d2 - d1), outlines, masks[c], reaches[c], rows, slopes, count)
-            count = _caps(cameras[c], c, k, s, frames[s], ends[s], half_axes[s], affects, axes, anchors, outlines, masks[c],
-                          reaches[c], point, rows, slopes, count)
+                        count = add_row(
+                            cameras[c],
+                            c,
+                            k,
+                            s,
+                            affects,
+                            axes,
+                            anchors,
+                            point,
+                            nx,
+                            ny,
+                            x,
+                            y,
+                            t,
+                            w1 + t * (w2 - w1),
+                            d1 + t * (d2 - d1),
+                            outlines,
+                            masks[c],
+                            reaches[c],
+                            rows,
+                            slopes,
+                            count,
+                        )
+            count = _caps(
+                cameras[c],
+                c,
+                k,
+                s,
+                frames[s],
+                ends[s],
+                half_axes[s],
+                affects,
+                axes,
+                anchors,
+                outlines,
+                masks[c],
+                reaches[c],
+                point,
+                rows,
+                slopes,
+                count,
+            )
         for b in range(border_counts[c]):
-            count = _uncovered(cameras[c], c, borders[c, b, 0], borders[c, b, 1], frames, shaped, ends, half_axes, affects,
-                               axes, anchors, outlines, stiffness, reaches[c], first, second, point, rows, slopes, count)
+            count = _uncovered(
+                cameras[c],
+                c,
+                borders[c, b, 0],
+                borders[c, b, 1],
+                frames,
+                shaped,
+                ends,
+                half_axes,
+                affects,
+                axes,
+                anchors,
+                outlines,
+                stiffness,
+                reaches[c],
+                first,
+                second,
+                point,
+                rows,
+                slopes,
+                count,
+            )
     return count
 
 
 @kernel
-def _uncovered(camera, c, x, y, frames, shaped, ends, half_axes, affects, axes, anchors, outlines, stiffness, reach, first,
-               second, point, rows, slopes, count):
+def _uncovered(
+    camera,
+    c,
+    x,
+    y,
+    frames,
+    shaped,
+    ends,
+    half_axes,
+    affects,
+    axes,
+    anchors,
+    outlines,
+    stiffness,
+    reach,
+    first,
+    second,
+    point,
+    rows,
+    slopes,
+    count,
+):
     """Residual of one border point of the mask that lies outside every segment; the new count."""
     best, nearest, gap, place, nx, ny = np.inf, -1, 0.0, 0.0, 0.0, 0.0
     for k in range(shaped.shape[0]):
@@ -239,19 +404,44 @@ def _uncovered(camera, c, x, y, frames, shaped, ends, half_axes, affects, axes, 
     w2, d2 = surface_point(camera, frames[s], ends[s, 1], half_axes[s, 1], nx, ny, second)
     for j in range(3):
         point[j] = first[j] + place * (second[j] - first[j])
-    return write_row(camera, c, s, affects, axes, anchors, point, nx, ny, x - gap * nx, y - gap * ny, place,
-                     w1 + place * (w2 - w1), d1 + place * (d2 - d1), gap, 1.0, rows, slopes, count)
+    return write_row(
+        camera,
+        c,
+        s,
+        affects,
+        axes,
+        anchors,
+        point,
+        nx,
+        ny,
+        x - gap * nx,
+        y - gap * ny,
+        place,
+        w1 + place * (w2 - w1),
+        d1 + place * (d2 - d1),
+        gap,
+        1.0,
+        rows,
+        slopes,
+        count,
+    )
 
 
 @kernel
-def _caps(camera, c, k, s, frame, ends, half_axes, affects, axes, anchors, outlines, mask, reach, point, rows, slopes, count):
+def _caps(
+    camera, c, k, s, frame, ends, half_axes, affects, axes, anchors, outlines, mask, reach, point, rows, slopes, count
+):
     """Residuals round both ends of one segment, in the directions that lead away from its middle."""
     out = outlines[k]
     dx, dy = out[END + 6] - out[END], out[END + 7] - out[END + 1]
     length = math.sqrt(dx * dx + dy * dy)
     full_circle = out[KIND] == 1.0
     for e in range(2):
-        if full_circle and out[END + 6 * e + 2] + out[END + 6 * e + 4] < out[END + 6 * (1 - e) + 2] + out[END + 6 * (1 - e) + 4] + e:
+        if (
+            full_circle
+            and out[END + 6 * e + 2] + out[END + 6 * e + 4]
+            < out[END + 6 * (1 - e) + 2] + out[END + 6 * (1 - e) + 4] + e
+        ):
             continue  # the smaller of two ends, one of which covers the other
         turns = 12 if full_circle else len(CAP_ANGLES)
         for i in range(turns):
@@ -268,6 +458,27 @@ def _caps(camera, c, k, s, frame, ends, half_axes, affects, axes, anchors, outli
             x = out[base] + (out[base + 2] * nx + out[base + 3] * ny) / h
             y = out[base + 1] + (out[base + 3] * nx + out[base + 4] * ny) / h
             width, depth = surface_point(camera, frame, ends[e], half_axes[e], nx, ny, point)
-            count = add_row(camera, c, k, s, affects, axes, anchors, point, nx, ny, x, y, float(e), width, depth, outlines, mask,
-                            reach, rows, slopes, count)
+            count = add_row(
+                camera,
+                c,
+                k,
+                s,
+                affects,
+                axes,
+                anchors,
+                point,
+                nx,
+                ny,
+                x,
+                y,
+                float(e),
+                width,
+                depth,
+                outlines,
+                mask,
+                reach,
+                rows,
+                slopes,
+                count,
+            )
     return count

@@ -1,12 +1,13 @@
 """The guided filter: climb to the mode of the posterior first, then spend the particles on its shape.
 
-A particle filter in 30 dimensions spends its particles on finding the peak. Where the likelihood can say which way is up (a
-contour can: every outline point knows how far the mask's border lies, and in which direction), a few Gauss-Newton steps
-find the mode from the prediction, and their curvature is the shape of the posterior around it. Particles drawn from that
-Gaussian (a Laplace proposal) are then weighted by the likelihood, and estimate and spread are read off them.
+A particle filter in 30 dimensions spends its particles on finding the peak. Where the likelihood can say which way is
+up (a contour can: every outline point knows how far the mask's border lies, and in which direction), a few Gauss-Newton
+steps find the mode from the prediction, and their curvature is the shape of the posterior around it. Particles drawn
+from that Gaussian (a Laplace proposal) are then weighted by the likelihood, and estimate and spread are read off them.
 
-After: the iterated extended Kalman filter for the climb, and the unscented and Laplace-proposal particle filters (van der
-Merwe et al. 2000; Doucet, Godsill and Andrieu 2000, section II-D) for the draw. Robust spreads: Geman and McClure (1987).
+After: the iterated extended Kalman filter for the climb, and the unscented and Laplace-proposal particle filters (van
+der Merwe et al. 2000; Doucet, Godsill and Andrieu 2000, section II-D) for the draw. Robust spreads: Geman and McClure
+(1987).
 
 ====================  ==========================================
 symbol                name
@@ -19,16 +20,17 @@ s_i                   Config.spreads, metres
 kappa                 Config.dependence
 ====================  ==========================================
 
-Each step of the climb solves (H_L + Lambda) d = g + Lambda (x^- - x) and goes from x to x + d. The posterior's covariance,
-the next frame's P, is (H_L / (kappa v) + Lambda)^-1: v is the residuals' variance relative to the one assumed, found in each frame, and kappa the
-number of neighbouring residuals that err together.
+Each step of the climb solves (H_L + Lambda) d = g + Lambda (x^- - x) and goes from x to x + d. The posterior's
+covariance, the next frame's P, is (H_L / (kappa v) + Lambda)^-1: v is the residuals' variance relative to the one
+assumed, found in each frame, and kappa the number of neighbouring residuals that err together.
 
-A climb finds the nearest mode, and a limb that left the picture's outline (an arm that crossed the trunk) may be found by no
-climb again. So in every frame one block of components, a limb, is also drawn anew all over its range; the draws that the
-likelihood likes best are climbed from, and taken if that explains the picture better by `margin` in log likelihood.
+A climb finds the nearest mode, and a limb that left the picture's outline (an arm that crossed the trunk) may be found
+by no climb again. So in every frame one block of components, a limb, is also drawn anew all over its range; the draws
+that the likelihood likes best are climbed from, and taken if that explains the picture better by `margin` in log
+likelihood.
 
-Cost: `len(spreads)` looks at the contour and N likelihood evaluations a frame; with blocks, `redraws` evaluations and about
-twice the looks more.
+Cost: `len(spreads)` looks at the contour and N likelihood evaluations a frame; with blocks, `redraws` evaluations and
+about twice the looks more.
 """
 
 from __future__ import annotations
@@ -101,7 +103,12 @@ class Config(CommonConfig):
         falling = all(s > 0 for s in self.spreads) and list(self.spreads) == sorted(self.spreads, reverse=True)
         require("spreads", len(self.spreads) > 0 and falling, "positive metres, falling", self.spreads)
         require("dependence", self.dependence > 0, "above 0", self.dependence)
-        require("weighting", self.weighting in ("laplace", "likelihood", "importance"), "laplace | likelihood | importance", self.weighting)
+        require(
+            "weighting",
+            self.weighting in ("laplace", "likelihood", "importance"),
+            "laplace | likelihood | importance",
+            self.weighting,
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -162,7 +169,7 @@ def step(
 def climb(
     prediction: FloatArray, prior: FloatArray, likelihood: GuidingLikelihood, dynamics: Dynamics, config: Config
 ) -> tuple[FloatArray, Linearised]:
-    """The posterior's mode near the prediction (D,) of precision `prior` (D, D), and the likelihood's curvature there."""
+    """The posterior's mode near the prediction (D,) of precision `prior` (D, D), and the curvature there."""
     mode = prediction
     for spread in config.spreads:
         seen = likelihood.normal_equations(mode, spread)

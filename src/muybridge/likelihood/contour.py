@@ -1,13 +1,13 @@
 """The contour as a least-squares problem: how far the model's outline lies from the border of the mask, and which way.
 
-This is what the guided filter climbs by (`filters.guided`). For outline point i of a pose, the border of the mask lies d_i
-metres further along the outward normal, and J_i says how fast the outline moves there with each degree of freedom, so that
-near the optimum
+This is what the guided filter climbs by (`filters.guided`). For outline point i of a pose, the border of the mask lies
+d_i metres further along the outward normal, and J_i says how fast the outline moves there with each degree of freedom,
+so that near the optimum
 
     -log p(mask | pose) = 1/2 sum_i w_i (d_i - J_i delta)^2 / sd^2,      w = (s^2 / (s^2 + d^2))^2.
 
-The weight w is Geman and McClure's: points further than the spread s from the border hardly count, so holes, shadows and
-other people do not pull. Shrinking s from steps to steps makes the search coarse to fine.
+The weight w is Geman and McClure's: points further than the spread s from the border hardly count, so holes, shadows
+and other people do not pull. Shrinking s from steps to steps makes the search coarse to fine.
 """
 
 from __future__ import annotations
@@ -117,8 +117,15 @@ def moved_by(arrays: BodyArrays, dofs: int) -> np.ndarray:
     return moved
 
 
-def contour_rows(body: Body, cameras: np.ndarray, shares: np.ndarray, borders: Borders, pose: np.ndarray, spread: float,
-                 side_points: int = SIDE_POINTS) -> ContourRows:
+def contour_rows(
+    body: Body,
+    cameras: np.ndarray,
+    shares: np.ndarray,
+    borders: Borders,
+    pose: np.ndarray,
+    spread: float,
+    side_points: int = SIDE_POINTS,
+) -> ContourRows:
     """Residuals of one pose.
 
     Parameters
@@ -136,8 +143,20 @@ def contour_rows(body: Body, cameras: np.ndarray, shares: np.ndarray, borders: B
     focal = np.sqrt(cameras[:, 0] * cameras[:, 1])
     root = cameras[:, 11:20].reshape(-1, 3, 3)[:, 2] @ pose[:3] + cameras[:, 22]
     reaches = np.clip(REACH * spread * focal / np.maximum(root, 0.1), 2.0, 0.5 * max(shares.shape[1:]))
-    count = kernel.contour_rows(np.ascontiguousarray(pose, np.float64), *arrays, moved_by(arrays, dofs), cameras, shares,
-                                borders.points, borders.counts, stiffness(body), reaches, side_points, rows, slopes)
+    count = kernel.contour_rows(
+        np.ascontiguousarray(pose, np.float64),
+        *arrays,
+        moved_by(arrays, dofs),
+        cameras,
+        shares,
+        borders.points,
+        borders.counts,
+        stiffness(body),
+        reaches,
+        side_points,
+        rows,
+        slopes,
+    )
     rows, slopes = rows[:count], slopes[:count]
     metres = rows[:, kernel.METRES]
     return ContourRows(

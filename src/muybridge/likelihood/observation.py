@@ -1,6 +1,7 @@
 """One frame as the filters see it: frozen, with `log_prob` for particles and `normal_equations` for the guided search.
 
-`ImageLikelihood` is made once for a body and a rig and says how pictures become evidence; `observe` is called once a frame.
+`ImageLikelihood` is made once for a body and a rig and says how pictures become evidence; `observe` is called once a
+frame.
 """
 
 from __future__ import annotations
@@ -15,7 +16,16 @@ from muybridge._kernels.silhouette import silhouette_counts
 from muybridge.body.model import Body
 from muybridge.cameras.model import Rig
 from muybridge.errors import InputError
-from muybridge.likelihood.contour import SIDE_POINTS, Borders, ContourRows, NormalEquations, contour_rows, mask_borders, no_borders, robust_weights
+from muybridge.likelihood.contour import (
+    SIDE_POINTS,
+    Borders,
+    ContourRows,
+    NormalEquations,
+    contour_rows,
+    mask_borders,
+    no_borders,
+    robust_weights,
+)
 from muybridge.likelihood.pictures import camera_rows, reduce_mask, stack_masks
 
 #: No contour is believed better than this, metres, however well it fits.

@@ -13,5 +13,17 @@ from muybridge.tracking.run import RunSummary, run
 from muybridge.tracking.start import Start, StartConfig, automatic_start
 from muybridge.tracking.tracker import Estimate, Tracker, TrackerConfig, TrackState
 
-__all__ = ["Estimate", "Fit", "FitConfig", "RunSummary", "Start", "StartConfig", "TrackState", "Tracker", "TrackerConfig",
-           "automatic_start", "fit_body", "run"]
+__all__ = [
+    "Estimate",
+    "Fit",
+    "FitConfig",
+    "RunSummary",
+    "Start",
+    "StartConfig",
+    "TrackState",
+    "Tracker",
+    "TrackerConfig",
+    "automatic_start",
+    "fit_body",
+    "run",
+]

@@ -33,12 +33,14 @@ def body_from(entry: BodyInput) -> Body:
     try:
         table = tomllib.loads(path.read_text(encoding="utf8"))
     except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
-        raise InputError(f"body measures {path}", expected="a TOML file of lengths in metres", got=str(error)) from error
+        raise InputError(
+            f"body measures {path}", expected="a TOML file of lengths in metres", got=str(error)
+        ) from error
     return with_measures(body, table)
 
 
 def with_measures(body: Body, measures: Mapping[str, float]) -> Body:
-    """The body with measured lengths, metres, by length group or segment (`upper_arm`, `left_thigh`); the rest stays."""
+    """The body with measured lengths, metres, by length group or segment (`upper_arm`, `left_thigh`)."""
     lengths = own_lengths(body)
     factors: dict[str, float] = {}
     for name, metres in measures.items():

@@ -29,7 +29,9 @@ class Checkpoint:
 def write_checkpoint(folder: Path, checkpoint: Checkpoint, digest: str) -> None:
     """Replace the folder's checkpoint in one move."""
     buffer = BytesIO()
-    np.savez(buffer, frames=np.array(checkpoint.frames), digest=np.frombuffer(digest.encode(), np.uint8), **checkpoint.arrays)
+    np.savez(
+        buffer, frames=np.array(checkpoint.frames), digest=np.frombuffer(digest.encode(), np.uint8), **checkpoint.arrays
+    )
     path = folder / CHECKPOINT_FILE
     with disk_errors(path):
         replace_file(path, buffer.getvalue())
@@ -50,8 +52,14 @@ def read_checkpoint(folder: Path, digest: str) -> Checkpoint | None:
         with np.load(path, allow_pickle=False) as data:
             arrays = {name: data[name] for name in data.files}
     except (OSError, ValueError, zipfile.BadZipFile) as error:
-        raise InputError(str(path), expected="a checkpoint of this program", got=str(error), remedy="run without --resume") from error
+        raise InputError(
+            str(path), expected="a checkpoint of this program", got=str(error), remedy="run without --resume"
+        ) from error
     if arrays.pop("digest", np.zeros(0, np.uint8)).tobytes().decode(errors="replace") != digest:
-        raise InputError(str(path), expected="a checkpoint of this job", got="one of another job or other settings",
-                         remedy="run without --resume, or into another folder")
+        raise InputError(
+            str(path),
+            expected="a checkpoint of this job",
+            got="one of another job or other settings",
+            remedy="run without --resume, or into another folder",
+        )
     return Checkpoint(int(arrays.pop("frames")), arrays)

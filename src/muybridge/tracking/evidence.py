@@ -77,7 +77,9 @@ def _inside(mask: np.ndarray, box: tuple[int, int, int, int] | None, median: int
 
 def _connected(mask: np.ndarray, reduction: int) -> np.ndarray:
     """A ready-made mask without pieces that lie apart from the person."""
-    return clean(mask, CleaningConfig(median=1, largest_hole=0, smallest_fragment=SMALLEST * reduction**2, gap=GAP * reduction))
+    return clean(
+        mask, CleaningConfig(median=1, largest_hole=0, smallest_fragment=SMALLEST * reduction**2, gap=GAP * reduction)
+    )
 
 
 @dataclass
@@ -119,8 +121,12 @@ def open_eyes(job: Job, rig: Rig, reductions: tuple[int, ...]) -> Eyes:
             eyes.sources.append(source)
             eyes._stack.callback(source.close)
             if tuple(source.size) != tuple(camera.size):
-                raise InputError(f"camera {camera.name!r}", expected=f"pictures of {_sized(camera.size)} as calibrated",
-                                 got=_sized(source.size), remedy="give the calibration of these pictures")
+                raise InputError(
+                    f"camera {camera.name!r}",
+                    expected=f"pictures of {_sized(camera.size)} as calibrated",
+                    got=_sized(source.size),
+                    remedy="give the calibration of these pictures",
+                )
     except BaseException:
         eyes._stack.close()
         raise
@@ -135,8 +141,12 @@ def build_segmenter(entry: CameraInput, reduction: int) -> Segmenter:
     """The camera's background model, trained at the reduced size."""
     background = entry.background
     if background is None:
-        raise InputError(f"camera {entry.name!r}", expected="masks or a [camera.background]", got="neither",
-                         remedy="give masks, a plate, empty frames, or a hue")
+        raise InputError(
+            f"camera {entry.name!r}",
+            expected="masks or a [camera.background]",
+            got="neither",
+            remedy="give masks, a plate, empty frames, or a hue",
+        )
     config = background_config(entry)
     model = BACKGROUND_MODELS[background.kind]
     empty = _empty_pictures(entry, reduction) if model.needs_pictures else []
@@ -155,9 +165,14 @@ def _empty_pictures(entry: CameraInput, reduction: int) -> list[np.ndarray]:
         if background.file is not None and background.empty is None:
             first, last = 0, source.frame_count - 1
         if not 0 <= first <= last < source.frame_count:
-            raise InputError(f"camera {entry.name!r}: empty", expected=f"frames within 0 to {source.frame_count - 1}",
-                             got=f"{first} to {last}")
-        chosen = set(np.unique(np.linspace(first, last, min(TRAINING_FRAMES, last - first + 1)).round().astype(int)).tolist())
+            raise InputError(
+                f"camera {entry.name!r}: empty",
+                expected=f"frames within 0 to {source.frame_count - 1}",
+                got=f"{first} to {last}",
+            )
+        chosen = set(
+            np.unique(np.linspace(first, last, min(TRAINING_FRAMES, last - first + 1)).round().astype(int)).tolist()
+        )
         pictures = []
         for index, _, image in source.frames(first):
             if index > last:

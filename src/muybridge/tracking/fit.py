@@ -1,8 +1,9 @@
 """The body fitted to the person and the cameras to each other: Gauss-Newton over several frames at once.
 
-Poses of F frames, one factor per length group, one per width and per depth group, and a shift of each camera's picture are
-moved together until the outlines meet the masks' borders. Left and right share their measures. The weights, residuals and
-slopes are those of `likelihood.contour`; the derivative by a length is how fast the segment's ends move with it.
+Poses of F frames, one factor per length group, one per width and per depth group, and a shift of each camera's picture
+are moved together until the outlines meet the masks' borders. Left and right share their measures. The weights,
+residuals and slopes are those of `likelihood.contour`; the derivative by a length is how fast the segment's ends move
+with it.
 """
 
 from __future__ import annotations
@@ -30,15 +31,15 @@ class FitConfig:
     girth_sd: float = 0.20  # prior, of a log width or depth
     shift_sd: float = 0.05  # prior, metres at the person
     pose_sd: float = 0.10  # pull to the poses given, radians; a tenth of it in metres
-    spreads: tuple[float, ...] = (0.12, 0.08, 0.06, 0.05, 0.04, 0.03, 0.03, 0.03, 0.03, 0.03)  # metres, one an iteration
+    spreads: tuple[float, ...] = (0.12, 0.08, 0.06, 0.05, 0.04) + 5 * (0.03,)  # metres, one an iteration
 
 
 @dataclass(frozen=True, eq=False)
 class Fit:
     """What the fit found.
 
-    lengths, widths, depths : factor by group; shifts : (C, 2) pixels of the recorded pictures, to be added to the principal
-    point; poses : (F, D); residual : root mean square weighted contour residual, metres.
+    lengths, widths, depths : factor by group; shifts : (C, 2) pixels of the recorded pictures, to be added to the
+    principal point; poses : (F, D); residual : root mean square weighted contour residual, metres.
     """
 
     lengths: dict[str, float]
@@ -49,7 +50,9 @@ class Fit:
     residual: float
 
 
-def fit_body(model: ImageLikelihood, observations: Sequence[Observation], poses: np.ndarray, config: FitConfig) -> tuple[ImageLikelihood, Fit]:
+def fit_body(
+    model: ImageLikelihood, observations: Sequence[Observation], poses: np.ndarray, config: FitConfig
+) -> tuple[ImageLikelihood, Fit]:
     """The model with body (and cameras) fitted to F frames, and what was changed.
 
     Parameters
@@ -115,7 +118,9 @@ class _Problem:
         focal = np.sqrt(model.cameras[:, 0] * model.cameras[:, 1])
         depth = np.maximum(0.5, places.mean(axis=0) @ model.cameras[:, 17:20].T + model.cameras[:, 22])
         shift_sd = np.repeat(config.shift_sd * focal / depth, 2)[: 2 * views]
-        sd = np.concatenate([np.full(counts[0], config.length_sd), np.full(counts[1] + counts[2], config.girth_sd), shift_sd])
+        sd = np.concatenate(
+            [np.full(counts[0], config.length_sd), np.full(counts[1] + counts[2], config.girth_sd), shift_sd]
+        )
         self.prior = np.diag(sd**-2.0)
         if views:
             self.prior[self.ends[2] :, self.ends[2] :] += _gauge(model, places) / np.median(shift_sd) ** 2 * 1e4
@@ -169,8 +174,10 @@ class _Problem:
         full = np.zeros((len(self.model.rig), 2))
         if len(shifts):
             full = shifts.reshape(-1, 2) * np.array(self.model.reductions)[:, None]
-        named = [dict(zip(names, np.exp(values).tolist(), strict=True))
-                 for names, values in ((self.lengths, lengths), (self.girths, widths), (self.girths, depths))]
+        named = [
+            dict(zip(names, np.exp(values).tolist(), strict=True))
+            for names, values in ((self.lengths, lengths), (self.girths, widths), (self.girths, depths))
+        ]
         return Fit(*named, full, poses, float(residual))
 
 
@@ -178,8 +185,10 @@ def _gauge(model: ImageLikelihood, places: np.ndarray) -> np.ndarray:
     """(2C, 2C) projector on the shifts that only move the world: the same as if the person stood elsewhere."""
     centre = places.mean(axis=0)
     step = 1e-3
-    moved = [np.concatenate([c.world_to_pixel(centre + step * axis) - c.world_to_pixel(centre) for c in model.rig])
-             for axis in np.eye(3)]
+    moved = [
+        np.concatenate([c.world_to_pixel(centre + step * axis) - c.world_to_pixel(centre) for c in model.rig])
+        for axis in np.eye(3)
+    ]
     basis = np.linalg.qr(np.column_stack(moved) / np.repeat(model.reductions, 2)[:, None])[0]
     return basis @ basis.T
 
@@ -189,4 +198,3 @@ def _segment_ends(body: Body, pose: np.ndarray) -> tuple[np.ndarray, np.ndarray]
     frames = body.frames(pose[None])[0]
     ends = np.einsum("sab,seb->sea", frames[..., :3], body.arrays.ends) + frames[:, None, :, 3]
     return ends[:, 0], ends[:, 1]
-

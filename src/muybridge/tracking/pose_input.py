@@ -1,4 +1,4 @@
-"""A job's `[start]` table made a first pose: from a pose file, from a reference's joints, or none (found automatically)."""
+"""A job's `[start]` table made a first pose: from a pose file, a reference's joints, or none (found automatically)."""
 
 from __future__ import annotations
 
@@ -41,15 +41,20 @@ def read_first_pose(path: Path, body: Body) -> np.ndarray:
             raise InputError(f"first pose {path}", expected="at least one row", got="none")
         return _named_pose(path, body, dict(zip(series.names, series.poses[0].tolist(), strict=True)))
     if body.name != "bodytrack":
-        raise InputError(f"first pose {path}", expected="a pose.csv or a TOML file of angles", got=path.suffix or "no suffix")
+        raise InputError(
+            f"first pose {path}", expected="a pose.csv or a TOML file of angles", got=path.suffix or "no suffix"
+        )
     return bodytrack_pose(read_poses(path)[0])
 
 
 def _named_pose(path: Path, body: Body, table: dict[str, float]) -> np.ndarray:
     unknown = [name for name in table if name not in body.dof_names]
     if unknown:
-        raise InputError(f"first pose {path}: {unknown[0]!r}", expected=f"a degree of freedom of {body.name!r}",
-                         remedy=f"they are {', '.join(body.dof_names)}")
+        raise InputError(
+            f"first pose {path}: {unknown[0]!r}",
+            expected=f"a degree of freedom of {body.name!r}",
+            remedy=f"they are {', '.join(body.dof_names)}",
+        )
     pose = np.array([float(table.get(name, 0.0)) for name in body.dof_names])
     if not np.isfinite(pose).all():
         raise InputError(f"first pose {path}", expected="finite numbers", got="nan or inf")
@@ -64,8 +69,11 @@ def _from_reference(job: Job, body: Body, frame: int) -> np.ndarray:
     rows = np.flatnonzero(series.frames == frame)
     if not len(rows):
         raise InputError(f"reference {job.reference.file}", expected=f"frame {frame}", got="no such frame")
-    known = {name: point for name, point in zip(series.names, series.positions[rows[0]], strict=True)
-             if np.isfinite(point).all() and name in body.joint_names}
+    known = {
+        name: point
+        for name, point in zip(series.names, series.positions[rows[0]], strict=True)
+        if np.isfinite(point).all() and name in body.joint_names
+    }
     return pose_from_joints(body, known)
 
 
@@ -88,7 +96,9 @@ def pose_from_joints(body: Body, joints: dict[str, np.ndarray]) -> np.ndarray:
     for heading in range(HEADINGS):
         start = rest.copy()
         start[body.dof_names.index("root_yaw")] = 2 * np.pi * heading / HEADINGS
-        found = least_squares(residuals, start, args=(start,), bounds=(body.lower - 1e-9, body.upper + 1e-9), max_nfev=60)
+        found = least_squares(
+            residuals, start, args=(start,), bounds=(body.lower - 1e-9, body.upper + 1e-9), max_nfev=60
+        )
         if best is None or found.cost < best.cost:
             best = found
     assert best is not None

@@ -1,7 +1,7 @@
 """What happens once before the first frame: the first pose, the body fitted to the person, the cameras checked.
 
-A short look ahead: the clip's first seconds are tracked with the body as given; a dozen frames of them then say how long and
-how wide the person's parts are, and whether the cameras agree with each other.
+A short look ahead: the clip's first seconds are tracked with the body as given; a dozen frames of them then say how
+long and how wide the person's parts are, and whether the cameras agree with each other.
 """
 
 from __future__ import annotations
@@ -52,11 +52,17 @@ class Preparation:
         if self.start is not None:
             out["start"] = {"frame": self.start_frame, "cost": self.start.cost, "rival_cost": self.start.rival_cost}
         if self.fit is not None:
-            out["body_fit"] = {"lengths": self.fit.lengths, "widths": self.fit.widths, "depths": self.fit.depths,
-                               "residual_m": self.fit.residual}
+            out["body_fit"] = {
+                "lengths": self.fit.lengths,
+                "widths": self.fit.widths,
+                "depths": self.fit.depths,
+                "residual_m": self.fit.residual,
+            }
         if self.check is not None:
-            out["cameras"] = {name: {"shift_px": shift.tolist(), "residual_px": float(np.hypot(*shift))}
-                              for name, shift in zip(self.names, self.check.shifts, strict=True)}
+            out["cameras"] = {
+                name: {"shift_px": shift.tolist(), "residual_px": float(np.hypot(*shift))}
+                for name, shift in zip(self.names, self.check.shifts, strict=True)
+            }
         return out
 
 
@@ -74,7 +80,9 @@ def prepare(job: Job, eyes: Eyes, body: Body, interval: float, frames: tuple[int
             model, fit = fit_body(model, observations, poses, FitConfig())
             poses = fit.poses
         if len(eyes.rig) > 1 and chosen:
-            corrected, check = fit_body(model, observations, poses, FitConfig(lengths=False, girths=False, cameras=True))
+            corrected, check = fit_body(
+                model, observations, poses, FitConfig(lengths=False, girths=False, cameras=True)
+            )
             if job.calibration.corrected:
                 model, poses = corrected, check.poses
                 if job.body.fit:
@@ -110,13 +118,18 @@ def _find_start(model: ImageLikelihood, eyes: Eyes, frames: tuple[int, int], int
         raise trouble
     limit = StartConfig().highest_cost
     if best[0].cost > limit:
-        raise InputError("automatic start", expected=f"a pose whose silhouettes differ by less than {limit:.2f}",
-                         got=f"{best[0].cost:.2f} at best (frame {best[1]})",
-                         remedy="give the first pose in [start], mend the masks, or begin where the person stands upright")
+        raise InputError(
+            "automatic start",
+            expected=f"a pose whose silhouettes differ by less than {limit:.2f}",
+            got=f"{best[0].cost:.2f} at best (frame {best[1]})",
+            remedy="give the first pose in [start], mend the masks, or begin where the person stands upright",
+        )
     return best
 
 
-def _track_between(model: ImageLikelihood, eyes: Eyes, interval: float, pose: np.ndarray, begin: int, end: int) -> np.ndarray:
+def _track_between(
+    model: ImageLikelihood, eyes: Eyes, interval: float, pose: np.ndarray, begin: int, end: int
+) -> np.ndarray:
     """The pose followed from frame `begin` back to frame `end`."""
     tracker = Tracker(model, interval, _LOOK)
     rng = np.random.default_rng(0)  # the mode does not depend on it
@@ -194,8 +207,12 @@ def rig_of_job(job: Job) -> Rig:
         rig = Rig(tuple(camera.renamed(entry.name) for camera, entry in zip(rig, job.cameras, strict=True)))
     missing = [entry.name for entry in job.cameras if entry.name not in rig.names]
     if missing:
-        raise InputError(f"camera {missing[0]!r}", expected=f"one of the calibrated cameras: {', '.join(rig.names)}",
-                         got="no calibration of that name", remedy="name the camera as the calibration does")
+        raise InputError(
+            f"camera {missing[0]!r}",
+            expected=f"one of the calibrated cameras: {', '.join(rig.names)}",
+            got="no calibration of that name",
+            remedy="name the camera as the calibration does",
+        )
     return rig.subset([entry.name for entry in job.cameras])
 
 

@@ -19,8 +19,8 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from muybridge.body import Body, read_body, write_body
-from muybridge.cameras.model import Rig
 from muybridge.cameras import read_rig, write_rig
+from muybridge.cameras.model import Rig
 from muybridge.errors import InputError
 from muybridge.filters import METHODS
 from muybridge.io.disk import make_folder
@@ -188,26 +188,50 @@ class _Run:
         memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0
         evaluations = self.evaluations / max(1, self.frames)
         summary = RunSummary(status, self.frames, self.job.seed, evaluations, speed, memory)
-        settings = {"filter": {"name": self.job.filter.name, **asdict(filter_config(self.job))},
-                    "reductions": list(tracker.model.reductions)}
+        settings = {
+            "filter": {"name": self.job.filter.name, **asdict(filter_config(self.job))},
+            "reductions": list(tracker.model.reductions),
+        }
         extra = self.preparation.to_dict() if self.preparation else {}
-        write_summary(self.out, {**asdict(summary), "settings": settings, "versions": _versions(),
-                                 "lost_frames": self.lost, **extra})
+        write_summary(
+            self.out,
+            {**asdict(summary), "settings": settings, "versions": _versions(), "lost_frames": self.lost, **extra},
+        )
         return summary
 
 
 def _log_fields(joints: int, dofs: int, cameras: int) -> dict[str, tuple[str, tuple[int, ...]]]:
     scalars = {name: ("<f8", ()) for name in ("time_s", "ess", "acceptance", "ms")}
-    return {"frame": ("<i8", ()), "status": ("<i8", ()), "evaluations": ("<i8", ()), **scalars, "pose": ("<f8", (dofs,)),
-            "joints": ("<f8", (joints, 3)), "sd": ("<f8", (joints,)), "costs": ("<f8", (cameras,))}
+    return {
+        "frame": ("<i8", ()),
+        "status": ("<i8", ()),
+        "evaluations": ("<i8", ()),
+        **scalars,
+        "pose": ("<f8", (dofs,)),
+        "joints": ("<f8", (joints, 3)),
+        "sd": ("<f8", (joints,)),
+        "costs": ("<f8", (cameras,)),
+    }
 
 
 def _record(index: int, seconds: float, estimate: Estimate, milliseconds: float) -> dict[str, Any]:
     info = estimate.info
-    acceptance = float(np.nanmean(info.acceptance)) if info is not None and np.isfinite(info.acceptance).any() else np.nan
-    return {"frame": index, "time_s": seconds, "status": STATUSES.index(estimate.status), "evaluations": estimate.evaluations,
-            "ess": estimate.ess, "acceptance": acceptance, "ms": milliseconds, "pose": estimate.pose,
-            "joints": estimate.joints, "sd": estimate.joint_sd, "costs": estimate.costs}
+    acceptance = (
+        float(np.nanmean(info.acceptance)) if info is not None and np.isfinite(info.acceptance).any() else np.nan
+    )
+    return {
+        "frame": index,
+        "time_s": seconds,
+        "status": STATUSES.index(estimate.status),
+        "evaluations": estimate.evaluations,
+        "ess": estimate.ess,
+        "acceptance": acceptance,
+        "ms": milliseconds,
+        "pose": estimate.pose,
+        "joints": estimate.joints,
+        "sd": estimate.joint_sd,
+        "costs": estimate.costs,
+    }
 
 
 def _versions() -> dict[str, str]:

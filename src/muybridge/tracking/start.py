@@ -23,11 +23,26 @@ from muybridge.likelihood.observation import Observation
 POSTURES: tuple[Mapping[str, float], ...] = (
     {},
     {"left_shoulder_abduction": 70, "right_shoulder_abduction": 70},
-    {"left_shoulder_abduction": 30, "right_shoulder_abduction": 30, "left_elbow_flexion": 40, "right_elbow_flexion": 40},
-    {"left_hip_flexion": 30, "right_hip_flexion": -20, "right_knee_flexion": 20, "right_shoulder_flexion": 25,
-     "left_shoulder_flexion": -25},
-    {"right_hip_flexion": 30, "left_hip_flexion": -20, "left_knee_flexion": 20, "left_shoulder_flexion": 25,
-     "right_shoulder_flexion": -25},
+    {
+        "left_shoulder_abduction": 30,
+        "right_shoulder_abduction": 30,
+        "left_elbow_flexion": 40,
+        "right_elbow_flexion": 40,
+    },
+    {
+        "left_hip_flexion": 30,
+        "right_hip_flexion": -20,
+        "right_knee_flexion": 20,
+        "right_shoulder_flexion": 25,
+        "left_shoulder_flexion": -25,
+    },
+    {
+        "right_hip_flexion": 30,
+        "left_hip_flexion": -20,
+        "left_knee_flexion": 20,
+        "left_shoulder_flexion": 25,
+        "right_shoulder_flexion": -25,
+    },
     {"left_shoulder_flexion": 80, "right_shoulder_flexion": 80},
 )
 
@@ -54,7 +69,7 @@ class Start:
     rival_cost: float
 
 
-def automatic_start(observation: Observation, config: StartConfig = StartConfig()) -> Start:  # noqa: B008
+def automatic_start(observation: Observation, config: StartConfig = StartConfig()) -> Start:
     """The best first pose in one frame.
 
     Raises
@@ -83,8 +98,12 @@ def place_of_masks(rig: Rig, observation: Observation) -> np.ndarray:
     """
     seeing = np.flatnonzero(observation.areas > 0)
     if len(seeing) < 2:
-        raise InputError("automatic start", expected="two or more cameras that see the person", got=str(len(seeing)),
-                         remedy="give the first pose in [start], or a later first frame")
+        raise InputError(
+            "automatic start",
+            expected="two or more cameras that see the person",
+            got=str(len(seeing)),
+            remedy="give the first pose in [start], or a later first frame",
+        )
     matrix, vector = np.zeros((3, 3)), np.zeros(3)
     for c in seeing:
         height, width = rig[int(c)].size[1], rig[int(c)].size[0]

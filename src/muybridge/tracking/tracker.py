@@ -1,7 +1,7 @@
 """One person, frame by frame: masks in, joints with their standard deviations out.
 
-`Tracker` holds what is fixed (body, cameras, settings); a `TrackState` is what the next frame needs. The loop over frames is
-the user's own if wanted:
+`Tracker` holds what is fixed (body, cameras, settings); a `TrackState` is what the next frame needs. The loop over
+frames is the user's own if wanted:
 
     state = tracker.init(rng, first_pose)
     for masks in frames:
@@ -40,7 +40,10 @@ class TrackerConfig:
 
 @dataclass(frozen=True, eq=False)
 class TrackState:
-    """What the next frame needs. usual_costs (C,): running mean of each camera's cost; troubled: bad frames in a row."""
+    """What the next frame needs.
+
+    usual_costs : (C,) running mean of each camera's cost; troubled : bad frames in a row; seen : good frames
+    """
 
     filter: State
     usual_costs: np.ndarray
@@ -50,7 +53,11 @@ class TrackState:
     def to_arrays(self) -> dict[str, np.ndarray]:
         """Named arrays, for a checkpoint."""
         arrays = {f"filter_{name}": np.asarray(value) for name, value in vars(self.filter).items()}
-        return arrays | {"usual_costs": self.usual_costs, "troubled": np.array(self.troubled), "seen": np.array(self.seen)}
+        return arrays | {
+            "usual_costs": self.usual_costs,
+            "troubled": np.array(self.troubled),
+            "seen": np.array(self.seen),
+        }
 
 
 @dataclass(frozen=True, eq=False)
@@ -118,11 +125,15 @@ class Tracker:
         """(J, 3) metres: where the joints are expected in the next frame."""
         return self.model.body.joints(self._predicted(state))
 
-    def step(self, rng: np.random.Generator, state: TrackState, masks: Sequence[np.ndarray]) -> tuple[TrackState, Estimate]:
+    def step(
+        self, rng: np.random.Generator, state: TrackState, masks: Sequence[np.ndarray]
+    ) -> tuple[TrackState, Estimate]:
         """One frame from its masks, C times (H, W) bool."""
         return self.step_observed(rng, state, self.model.observe(masks))
 
-    def step_observed(self, rng: np.random.Generator, state: TrackState, observation: Observation) -> tuple[TrackState, Estimate]:
+    def step_observed(
+        self, rng: np.random.Generator, state: TrackState, observation: Observation
+    ) -> tuple[TrackState, Estimate]:
         """One frame from its evidence."""
         seeing = observation.areas >= MINIMUM_AREA
         if not seeing.any():
