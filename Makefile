@@ -20,7 +20,7 @@ unexport PYTHONDONTWRITEBYTECODE
 help:
 	@echo "make demo        render a scene, track it, compare it with its truth"
 	@echo "make demo-real   fetch a real recording with four cameras and track the person in it"
-	@echo "make test        lint, layers, and every test"
+	@echo "make test        lint, layers, types, and every test"
 	@echo "make lint | types | layers | docs-check | bench | requirements | clean"
 
 demo: $(READY)
@@ -30,7 +30,7 @@ demo-real: $(READY)
 	$(BIN)/muybridge sample beam --out samples/beam
 	$(BIN)/muybridge track samples/beam/JOB.toml --out $(OUT)/beam --seed $(SEED) $(COMPARE)
 
-test: lint layers
+test: lint layers types
 	$(BIN)/python -m pytest
 
 lint: $(READY)

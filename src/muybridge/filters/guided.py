@@ -147,7 +147,7 @@ def step(
     mode, seen = climb(prediction, prior, likelihood, dynamics, config)
     start, mode, seen = _redraw_limb(rng, prediction, mode, seen, prior, counted, likelihood, dynamics, config)
     precision = seen.curvature / (config.dependence * seen.noise) + prior
-    covariance = np.linalg.inv(precision)
+    covariance = np.linalg.inv(precision).astype(np.float64)
     standard = rng.standard_normal((config.particles, mode.size))
     standard[0] = 0.0  # the mode itself is always among them
     deviations = np.linalg.solve(np.linalg.cholesky(precision).T, standard.T).T

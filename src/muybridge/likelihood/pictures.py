@@ -36,7 +36,8 @@ def reduce_mask(mask: np.ndarray, factor: int) -> np.ndarray:
     height, width = (side // factor * factor for side in mask.shape)
     whole = mask[:height, :width].astype(np.uint8) * np.uint8(255)
     if factor > 1:
-        whole = cv2.resize(whole, (width // factor, height // factor), interpolation=cv2.INTER_AREA)
+        smaller = cv2.resize(whole, (width // factor, height // factor), interpolation=cv2.INTER_AREA)
+        return smaller.astype(np.float32) / 255.0
     return whole.astype(np.float32) / 255.0
 
 

@@ -9,6 +9,7 @@ import zipfile
 from dataclasses import dataclass
 from io import BytesIO
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -29,9 +30,9 @@ class Checkpoint:
 def write_checkpoint(folder: Path, checkpoint: Checkpoint, digest: str) -> None:
     """Replace the folder's checkpoint in one move."""
     buffer = BytesIO()
-    np.savez(
-        buffer, frames=np.array(checkpoint.frames), digest=np.frombuffer(digest.encode(), np.uint8), **checkpoint.arrays
-    )
+    named = np.frombuffer(digest.encode(), np.uint8)
+    arrays: dict[str, Any] = {"frames": np.array(checkpoint.frames), "digest": named, **checkpoint.arrays}
+    np.savez(buffer, **arrays)
     path = folder / CHECKPOINT_FILE
     with disk_errors(path):
         replace_file(path, buffer.getvalue())

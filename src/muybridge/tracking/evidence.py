@@ -15,7 +15,7 @@ import numpy as np
 from muybridge.cameras.model import Camera, Rig
 from muybridge.errors import InputError
 from muybridge.io.job import CameraInput, Job, background_config
-from muybridge.io.video import open_masks, open_pictures
+from muybridge.io.video import MaskSource, PictureSource, open_masks, open_pictures
 from muybridge.segmentation import BACKGROUND_MODELS, CleaningConfig, Segmenter, ShadowConfig, clean, reduce_image
 
 MARGIN_M = 0.45  # metres round the expected joints in which the person is looked for
@@ -113,7 +113,7 @@ def open_eyes(job: Job, rig: Rig, reductions: tuple[int, ...]) -> Eyes:
     try:
         for entry, camera, reduction in zip(job.cameras, rig, reductions, strict=True):
             if entry.masks is not None:
-                source = open_masks(entry.masks, entry.frame_rate)
+                source: MaskSource | PictureSource = open_masks(entry.masks, entry.frame_rate)
                 eyes.eyes.append(Eye(camera, reduction, None))
             else:
                 source = open_pictures(entry.pictures, entry.frame_rate)

@@ -178,7 +178,7 @@ class _Problem:
             dict(zip(names, np.exp(values).tolist(), strict=True))
             for names, values in ((self.lengths, lengths), (self.girths, widths), (self.girths, depths))
         ]
-        return Fit(*named, full, poses, float(residual))
+        return Fit(named[0], named[1], named[2], full, poses, float(residual))
 
 
 def _gauge(model: ImageLikelihood, places: np.ndarray) -> np.ndarray:

@@ -201,7 +201,7 @@ def rig_of_job(job: Job) -> Rig:
     size = None
     if any(path is not None and path.suffix == ".cal" for path in paths):
         with open_pictures(job.cameras[0].pictures, job.cameras[0].frame_rate) as first:
-            size = tuple(first.size)
+            size = (int(first.size[0]), int(first.size[1]))
     rig = read_rig(paths[0] if len(paths) == 1 else paths, calibration.unit, size=size, up=calibration.up)
     if len(paths) == len(job.cameras) > 1 and not set(rig.names) >= {c.name for c in job.cameras}:
         rig = Rig(tuple(camera.renamed(entry.name) for camera, entry in zip(rig, job.cameras, strict=True)))

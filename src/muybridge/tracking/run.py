@@ -157,7 +157,7 @@ class _Run:
 
     def _replay(self, writer: RunWriter, diagnostics: DiagnosticsWriter, checkpoint: Checkpoint | None) -> list[Any]:
         """Write the tables of the frames up to the checkpoint again; returns their records."""
-        kept = []
+        kept: list[Any] = []
         if checkpoint is not None:
             for record in read_records(self.out / LOG_FILE):
                 if len(kept) == checkpoint.frames:

@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from muybridge.filters import METHODS, CommonConfig, ConstantVelocity, Info, State, Weights
+from muybridge.filters import METHODS, CommonConfig, ConstantVelocity, Info, State, Weights, guided
 from muybridge.likelihood.observation import ImageLikelihood, Observation
 
 TRACKED, DOUBTFUL, UNSEEN, LOST = "tracked", "doubtful", "unseen", "lost"
@@ -103,7 +103,7 @@ class Tracker:
     @cached_property
     def filter_config(self) -> Any:
         config = self.config.filter or METHODS[self.config.method].WORKING
-        if self.config.method == "guided" and not config.blocks:
+        if isinstance(config, guided.Config) and not config.blocks:
             limbs = [indices for name, indices in self.model.body.blocks.items() if name != "root"]
             config = replace(config, blocks=tuple(tuple(indices.tolist()) for indices in limbs))
         return config
