@@ -204,7 +204,8 @@ def _redraw_limb(
         climbed, other = climb(candidate, prior, likelihood, dynamics, config)
         there = float(counted.log_prob(climbed[None])[0])
         if config.sharpness * (there - here) > config.margin:
-            start, mode, seen, here = candidate, climbed, other, there
+            start, mode, seen, here = prediction.copy(), climbed, other, there
+            start[block] = candidate[block]
     return start, mode, seen
 
 

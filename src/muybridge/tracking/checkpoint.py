@@ -6,6 +6,7 @@ A zip of arrays with checksums, replaced whole; nothing is pickled.
 from __future__ import annotations
 
 import zipfile
+import zlib
 from dataclasses import dataclass
 from io import BytesIO
 from pathlib import Path
@@ -17,6 +18,8 @@ from muybridge.errors import InputError
 from muybridge.io.disk import disk_errors, replace_file
 
 CHECKPOINT_FILE = "checkpoint.npz"
+#: What reading a cut-off or changed zip of arrays raises.
+_DAMAGE = (OSError, EOFError, ValueError, KeyError, NotImplementedError, RuntimeError, zipfile.BadZipFile, zlib.error)
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,7 +55,8 @@ def read_checkpoint(folder: Path, digest: str) -> Checkpoint | None:
     try:
         with np.load(path, allow_pickle=False) as data:
             arrays = {name: data[name] for name in data.files}
-    except (OSError, ValueError, zipfile.BadZipFile) as error:
+            frames = int(arrays.pop("frames"))
+    except _DAMAGE as error:
         raise InputError(
             str(path), expected="a checkpoint of this program", got=str(error), remedy="run without --resume"
         ) from error
@@ -63,4 +67,4 @@ def read_checkpoint(folder: Path, digest: str) -> Checkpoint | None:
             got="one of another job or other settings",
             remedy="run without --resume, or into another folder",
         )
-    return Checkpoint(int(arrays.pop("frames")), arrays)
+    return Checkpoint(frames, arrays)
