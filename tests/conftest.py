@@ -5,6 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from threadpoolctl import threadpool_limits
+
+# Small matrices: a second thread inside BLAS only waits, tens of times as long where other processes run as well.
+threadpool_limits(limits=1, user_api="blas")
 
 SHARED = Path(__file__).resolve().parents[2] / "shared"
 

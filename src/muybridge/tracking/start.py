@@ -82,9 +82,10 @@ def automatic_start(observation: Observation, config: StartConfig = StartConfig(
     starts = _candidates(model.body, place, config.headings)
     poses = np.array([_climb(observation, pose, config, config.wide) for pose in starts])
     order = np.argsort(observation.costs(poses).mean(axis=1))[: config.refined]
-    poses = np.array([_climb(observation, pose, config, config.narrow) for pose in poses[order]])
+    refined = np.array([_climb(observation, pose, config, config.narrow) for pose in poses[order]])
+    poses = np.concatenate([refined, poses])  # among the others may be the only ones that head elsewhere
     costs = observation.costs(poses).mean(axis=1)
-    best = int(np.argmin(costs))
+    best = int(np.argmin(costs[: len(refined)]))
     yaw = model.body.dof_names.index("root_yaw")
     apart = np.cos(poses[:, yaw] - poses[best, yaw]) < 0.0
     rival = float(costs[apart].min()) if apart.any() else 1.0

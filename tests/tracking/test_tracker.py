@@ -1,0 +1,151 @@
+"""The tracker on a walking person's exact masks, and on what masks are really like: absent, blind, wrong.
+
+Masks are drawn from the tracked body itself, so that errors are those of whole pixels and of the filter: predicted,
+and derived from that, a mean joint error below one pixel (14.7 mm); measured, 3.6 mm with four cameras, single joints
+up to 53 mm where an arm passes the trunk.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+
+import numpy as np
+import pytest
+
+from muybridge.tracking import Estimate, Tracker, TrackState
+from tracking.made import INTERVAL, PIXEL, empty_masks, errors, exact_masks, likelihood, ring, walking
+
+FRAMES = 20
+TRUNK = slice(0, 3)  # pelvis, thorax, head top
+
+
+@pytest.fixture(scope="module")
+def clip():
+    """Body, poses (T, D), rig, masks of every frame."""
+    body, poses = walking(FRAMES)
+    rig = ring()
+    return body, poses, rig, [exact_masks(body, pose, rig) for pose in poses]
+
+
+def follow(clip, spoil: Callable[[int, list], list] = lambda frame, masks: masks) -> list[Estimate]:
+    """From the true first pose over frames whose masks `spoil` may change."""
+    body, poses, rig, frames = clip
+    tracker = Tracker(likelihood(body, rig), INTERVAL)
+    rng = np.random.default_rng(0)
+    state, out = tracker.init(rng, poses[0]), []
+    for frame, masks in enumerate(frames):
+        state, estimate = tracker.step(rng, state, spoil(frame, list(masks)))
+        out.append(estimate)
+    return out
+
+
+def mean_error(clip, estimates: Iterable[Estimate]) -> float:
+    body, poses = clip[:2]
+    return float(np.mean([errors(body, e.pose, pose) for e, pose in zip(estimates, poses, strict=True)]))
+
+
+class TestFollows:
+    def test_exact_masks(self, clip) -> None:
+        body, poses = clip[:2]
+        assert errors(body, poses[0], poses[-1]).mean() > 5 * PIXEL, "standing still would do"
+        estimates = follow(clip)
+        assert mean_error(clip, estimates) < PIXEL
+        assert {estimate.status for estimate in estimates} == {"tracked"}
+        for estimate in estimates:
+            assert estimate.joints.shape == (15, 3) and estimate.joint_sd.shape == (15,)
+            assert (estimate.joint_sd > 0).all() and estimate.costs.shape == (4,) and (estimate.costs < 0.1).all()
+
+    def test_the_same_again(self, clip) -> None:
+        first, second = follow(clip), follow(clip)
+        assert all(a.joints.tobytes() == b.joints.tobytes() for a, b in zip(first, second, strict=True))
+
+    def test_a_blind_camera_is_left_out(self, clip) -> None:
+        """Three cameras know as much to a factor below two."""
+
+        def blind(frame: int, masks: list) -> list:
+            return [np.zeros_like(masks[0]), *masks[1:]] if frame >= 5 else masks
+
+        estimates = follow(clip, blind)
+        assert mean_error(clip, estimates) < 2 * PIXEL
+        assert {estimate.status for estimate in estimates} == {"tracked"}
+
+    @pytest.mark.parametrize("camera", range(4))
+    @pytest.mark.parametrize("kind", ["full", "elsewhere", "noise"])
+    def test_a_bad_mask_does_not_veto(self, clip, kind: str, camera: int) -> None:
+        """One camera in four lies in every other frame: the others' contours decide.
+
+        Where they can: cameras 0 and 2 look from the side, and legs that pass each other are told apart by them alone,
+        so that only the trunk is asked for. Measured: 2.5 to 7 mm there, 6 to 7 mm for all joints with the others.
+        """
+
+        def spoiled(frame: int, masks: list) -> list:
+            if frame % 2:
+                masks[camera] = {
+                    "full": np.ones_like(masks[0]),
+                    "elsewhere": np.roll(masks[camera], 60, axis=1),
+                    "noise": np.random.default_rng(frame).random(masks[0].shape) < 0.3,
+                }[kind]
+            return masks
+
+        body, poses = clip[:2]
+        away = np.array([errors(body, e.pose, p) for e, p in zip(follow(clip, spoiled), poses, strict=True)])
+        assert away[:, TRUNK].mean() < PIXEL
+        assert camera % 2 == 0 or away.mean() < PIXEL
+
+
+class TestUnseen:
+    GONE = range(6, 18)
+
+    @pytest.fixture(scope="class")
+    def estimates(self, clip) -> list[Estimate]:
+        return follow(clip, lambda frame, masks: empty_masks(clip[2]) if frame in self.GONE else masks)
+
+    def test_unseen_then_lost(self, clip, estimates: list[Estimate]) -> None:
+        """`patience` is 8."""
+        gone = [estimates[frame].status for frame in self.GONE]
+        assert gone == ["unseen"] * 8 + ["lost"] * 4
+        assert {e.status for e in estimates[: self.GONE.start]} == {"tracked"}
+
+    def test_stays_where_last_seen_and_less_sure(self, estimates: list[Estimate]) -> None:
+        gone = [estimates[frame] for frame in self.GONE]
+        assert all(np.array_equal(e.pose, estimates[self.GONE.start - 1].pose) for e in gone)
+        sd = np.array([e.joint_sd for e in gone])
+        assert (np.diff(sd, axis=0) > 0).all() and (sd[0] > estimates[self.GONE.start - 1].joint_sd).all()
+        assert all(np.isnan(e.costs).all() and e.evaluations == 0 for e in gone)
+
+    def test_found_again(self, clip, estimates: list[Estimate]) -> None:
+        """0.12 m later, within reach of the contour; the legs passed each other, and which is which is not known."""
+        body, poses = clip[:2]
+        assert estimates[-1].status != "lost"
+        assert errors(body, estimates[-1].pose, poses[-1])[TRUNK].max() < 2 * PIXEL
+
+
+class TestState:
+    def test_saved_and_restored(self, clip) -> None:
+        body, poses, rig, frames = clip
+        tracker = Tracker(likelihood(body, rig), INTERVAL)
+        state, _ = tracker.step(np.random.default_rng(0), tracker.init(np.random.default_rng(1), poses[0]), frames[0])
+        again = tracker.restore(state.to_arrays())
+        assert isinstance(again, TrackState) and (again.troubled, again.seen) == (state.troubled, state.seen)
+        one, two = (tracker.step(np.random.default_rng(2), s, frames[1])[1] for s in (state, again))
+        assert one.joints.tobytes() == two.joints.tobytes() and one.joint_sd.tobytes() == two.joint_sd.tobytes()
+
+    def test_predicts_half_the_last_step(self, clip) -> None:
+        """`velocity_gain` is one half."""
+        body, poses, rig, frames = clip
+        tracker = Tracker(likelihood(body, rig), INTERVAL)
+        rng = np.random.default_rng(0)
+        first = tracker.init(rng, poses[0])
+        state, estimate = tracker.step(rng, first, frames[1])
+        ahead = estimate.pose + 0.5 * (estimate.pose - poses[0])
+        within = np.clip(ahead, body.lower, body.upper)
+        np.testing.assert_allclose(tracker.predict(state), body.joints(within), atol=0.01)
+
+    def test_weights_follow_the_costs(self, clip) -> None:
+        """1 / (usual cost + trust), nothing for who does not see."""
+        body, poses, rig, _ = clip
+        tracker = Tracker(likelihood(body, rig), INTERVAL)
+        state = tracker.init(np.random.default_rng(0), poses[0])
+        state = TrackState(state.filter, np.array([0.05, 0.15, 0.05, 0.35]), 0, 5)
+        weights = np.array(tracker.weighted(state, np.array([True, True, False, True])).weights)
+        np.testing.assert_allclose(weights / weights[0], [1.0, 0.5, 0.0, 0.25])
