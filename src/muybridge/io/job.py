@@ -117,12 +117,13 @@ class FilterInput(Table, frozen=True):
 
 
 class LikelihoodInput(Table, frozen=True):
-    """`[likelihood]`: the weight of each cue; 0 switches it off."""
+    """`[likelihood]`: the weight of each cue against the others; 0 switches it off."""
 
     silhouette: Weight = 1.0
     colour: Weight = 0.0
     boundary: Weight = 0.0
-    edges: Weight = 1.0
+    edges: Weight = 0.0
+    silhouette_kind: Literal["two-sided", "one-sided", "iou"] = "two-sided"
     reduction: Annotated[int, Meta(ge=1, le=16)] | None = None
     """Pictures are reduced by this factor; chosen by the person's size where absent."""
 

@@ -1,7 +1,7 @@
 """One frame as the filters see it: frozen, with `log_prob` for particles and `normal_equations` for the guided search.
 
 `ImageLikelihood` is made once for a body and a rig and says how pictures become evidence; `observe` is called once a
-frame.
+frame. Cues are made of a frame when they are first asked for: see `likelihood.cues`.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ from muybridge._kernels.silhouette import silhouette_counts
 from muybridge.body.model import Body
 from muybridge.cameras.model import Rig
 from muybridge.errors import InputError
+from muybridge.likelihood.colour import ColourReference, colour_tables, measure_reference, update_reference
 from muybridge.likelihood.contour import (
     SIDE_POINTS,
     Borders,
@@ -26,7 +27,10 @@ from muybridge.likelihood.contour import (
     no_borders,
     robust_weights,
 )
+from muybridge.likelihood.cues import CueWeights, complete_reference, fusion_of
+from muybridge.likelihood.fusion import Fusion
 from muybridge.likelihood.pictures import camera_rows, reduce_mask, stack_masks
+from muybridge.segmentation import reduce_image
 
 #: No contour is believed better than this, metres, however well it fits.
 MINIMUM_SD = 0.002
@@ -49,6 +53,8 @@ class ImageLikelihood:
         Error of one contour point, with neighbours' dependence in it.
     weights : (C,) float
         Of each camera; a camera whose masks are bad can be made to count less.
+    cues : CueWeights
+        What `log_prob` is made of; two-sided silhouettes unless said otherwise.
     """
 
     body: Body
@@ -56,6 +62,7 @@ class ImageLikelihood:
     reductions: tuple[int, ...]
     row_sd: float = 0.02
     weights: tuple[float, ...] = ()
+    cues: CueWeights = CueWeights()
 
     @cached_property
     def cameras(self) -> np.ndarray:
@@ -72,24 +79,62 @@ class ImageLikelihood:
         weights = np.array(self.weights or np.ones(len(self.rig)), float)
         return weights / weights.mean()
 
-    def observe(self, masks: Sequence[np.ndarray]) -> Observation:
-        """The frame's evidence from masks, C times (H, W) bool: at recorded size, or already reduced."""
-        if len(masks) != len(self.rig):
-            raise InputError("masks", expected=f"one for each of the {len(self.rig)} cameras", got=str(len(masks)))
+    def observe(
+        self,
+        masks: Sequence[np.ndarray],
+        pictures: Sequence[np.ndarray] | None = None,
+        reference: ColourReference | None = None,
+    ) -> Observation:
+        """The frame's evidence.
+
+        Parameters
+        ----------
+        masks : C times (H, W) bool
+            At recorded size, or already reduced.
+        pictures : C times (H, W, 3) uint8 BGR, or grey (H, W) uint8; only the cues of colour and edges need them
+            Likewise.
+        reference : what the segments look like, for colour
+        """
+        self._one_each("masks", masks)
         shares = [self._reduced(c, mask) for c, mask in enumerate(masks)]
-        return Observation(self, *stack_masks(shares))
+        return Observation(self, *stack_masks(shares), self._pictures(pictures), reference)
+
+    def _pictures(self, pictures: Sequence[np.ndarray] | None) -> tuple[np.ndarray, ...]:
+        """The pictures reduced, where a cue looks at them."""
+        if not self.cues.need_pictures:
+            return ()
+        if pictures is None:
+            raise InputError("pictures", expected="one for each camera, for the cues of colour and edges", got="none",
+                             remedy="give pictures, or set the weights of colour and edges to 0")  # fmt: skip
+        self._one_each("pictures", pictures)
+        reduced = []
+        for c, picture in enumerate(pictures):
+            small, factor = self._small(c, picture, "picture"), 1.0 / self.reductions[c]
+            reduced.append(reduce_image(picture, factor) if small is None else picture[: small[0], : small[1]])
+        return tuple(reduced)
+
+    def _one_each(self, what: str, given: Sequence[np.ndarray]) -> None:
+        if len(given) != len(self.rig):
+            raise InputError(what, expected=f"one for each of the {len(self.rig)} cameras", got=str(len(given)))
 
     def _reduced(self, c: int, mask: np.ndarray) -> np.ndarray:
         """The share of foreground per block (H', W') float32 of camera c's mask."""
+        small = self._small(c, mask, "mask")
+        if small is None:
+            return reduce_mask(mask, self.reductions[c])
+        return mask[: small[0], : small[1]].astype(np.float32)
+
+    def _small(self, c: int, image: np.ndarray, what: str) -> tuple[int, int] | None:
+        """Rows and columns to keep of an image that is reduced already; None where it is as recorded."""
         camera, factor = self.rig[c], self.reductions[c]
         width, height = camera.size
-        if mask.shape == (height, width):
-            return reduce_mask(mask, factor)
+        if image.shape[:2] == (height, width):
+            return None
         small = height // factor, width // factor
-        if all(0 <= had - need <= 1 for had, need in zip(mask.shape, small, strict=True)):
-            return mask[: small[0], : small[1]].astype(np.float32)
-        got = "x".join(map(str, mask.shape[::-1]))
-        raise InputError(f"mask of camera {camera.name!r}", expected=f"{width}x{height} pixels as calibrated", got=got)
+        if all(0 <= had - need <= 1 for had, need in zip(image.shape[:2], small, strict=True)):
+            return small
+        expected, got = f"{width}x{height} pixels as calibrated", "x".join(map(str, image.shape[1::-1]))
+        raise InputError(f"{what} of camera {camera.name!r}", expected=expected, got=got)
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,11 +142,28 @@ class Observation:
     """Evidence of one frame.
 
     shares : (C, H, W) float32 in [0, 1], reduced masks; bits : (C, H, words) uint64, the same thresholded at one half.
+    pictures : C times (H, W, 3) or (H, W) uint8, reduced; none where no cue looks at them.
+    reference : what the segments look like, where colour counts.
     """
 
     model: ImageLikelihood
     shares: np.ndarray
     bits: np.ndarray
+    pictures: tuple[np.ndarray, ...] = ()
+    reference: ColourReference | None = None
+
+    @property
+    def body(self) -> Body:
+        return self.model.body
+
+    @property
+    def cameras(self) -> np.ndarray:
+        """(C, CAMERA_COLUMNS) float64, of the reduced pictures."""
+        return self.model.cameras
+
+    @property
+    def cues(self) -> CueWeights:
+        return self.model.cues
 
     @cached_property
     def areas(self) -> np.ndarray:
@@ -112,6 +174,31 @@ class Observation:
     def borders(self) -> Borders:
         """The masks' borders, for what no segment covers."""
         return mask_borders(self.shares)
+
+    @cached_property
+    def tables(self) -> np.ndarray:
+        """Cumulative histograms of the pictures; see `likelihood.colour`."""
+        return colour_tables(self.pictures)
+
+    @cached_property
+    def fusion(self) -> Fusion:
+        """The cues that are switched on, weighted."""
+        return fusion_of(self, self.model.camera_weights)
+
+    def first_reference(self, pose: np.ndarray) -> ColourReference:
+        """What every segment looks like if this frame's pose is (D,), hidden ones filled."""
+        for camera, picture in zip(self.model.rig, self.pictures, strict=True):
+            if picture.ndim != 3 or not (np.ptp(picture, axis=2) > 0).any():
+                raise InputError(f"camera {camera.name!r}", expected="colour pictures, for the cue of colour",
+                                 got="grey ones", remedy="set the weight of colour to 0")  # fmt: skip
+        return complete_reference(self, pose)
+
+    def updated_reference(self, pose: np.ndarray) -> ColourReference:
+        """The reference with what is seen at a pose (D,), (5.7)."""
+        if self.reference is None:
+            return self.first_reference(pose)
+        measured = measure_reference(self.body.arrays, self.cameras, self.tables, pose)
+        return update_reference(self.reference, measured)
 
     def costs(self, poses: np.ndarray) -> np.ndarray:
         """Two-sided silhouette cost (Sedai 2013, eq. 12) of poses (N, D) in each camera, (N, C) in [0, 1]."""
@@ -124,6 +211,8 @@ class Observation:
 
     def log_prob(self, poses: np.ndarray) -> np.ndarray:
         """Log likelihood (N,) of poses (N, D), up to a constant."""
+        if not self.cues.only_two_sided:
+            return self.fusion.log_prob(poses)
         return -np.einsum("nc,c->n", self.costs(poses), self.model.camera_weights) / len(self.model.rig)
 
     def contour(self, pose: np.ndarray, spread: float, side_points: int = SIDE_POINTS) -> ContourRows:

@@ -84,21 +84,30 @@ def _connected(mask: np.ndarray, reduction: int) -> np.ndarray:
 
 @dataclass
 class Eyes:
-    """All cameras of a job, opened; a context manager that closes them."""
+    """All cameras of a job, opened; a context manager that closes them.
+
+    sources : what masks come from, one a camera; then the pictures, where they are wanted and masks are ready-made
+    shown : which of the sources shows each camera's pictures; empty where none are wanted
+    """
 
     rig: Rig
     reductions: tuple[int, ...]
     eyes: list[Eye] = field(default_factory=list)
     sources: list = field(default_factory=list)
+    shown: list[int] = field(default_factory=list)
     _stack: ExitStack = field(default_factory=ExitStack)
 
     def masks(self, images: Sequence[np.ndarray], expected: np.ndarray | None) -> list[np.ndarray]:
         """Masks of one frame; `expected` (J, 3) metres: where the joints should be."""
-        return [eye.mask(image, expected) for eye, image in zip(self.eyes, images, strict=True)]
+        return [eye.mask(image, expected) for eye, image in zip(self.eyes, images, strict=False)]
+
+    def pictures(self, images: Sequence[np.ndarray]) -> list[np.ndarray] | None:
+        """Pictures of one frame; None where none are wanted."""
+        return [images[place] for place in self.shown] if self.shown else None
 
     def read(self, index: int) -> list[np.ndarray]:
-        """What every camera shows in one frame."""
-        return [source.read(index) for source in self.sources]
+        """What masks of one frame come from, camera by camera."""
+        return [source.read(index) for source in self.sources[: len(self.eyes)]]
 
     def __enter__(self) -> Eyes:
         return self
@@ -107,30 +116,43 @@ class Eyes:
         self._stack.close()
 
 
-def open_eyes(job: Job, rig: Rig, reductions: tuple[int, ...]) -> Eyes:
-    """Open every camera's pictures (or ready-made masks) and train its background."""
+def open_eyes(job: Job, rig: Rig, reductions: tuple[int, ...], with_pictures: bool = False) -> Eyes:
+    """Open every camera's pictures (or ready-made masks) and train its background.
+
+    with_pictures : bool
+        Open the pictures as well where masks are ready-made.
+    """
     eyes = Eyes(rig, reductions)
     try:
         for entry, camera, reduction in zip(job.cameras, rig, reductions, strict=True):
             if entry.masks is not None:
-                source: MaskSource | PictureSource = open_masks(entry.masks, entry.frame_rate)
+                _add_source(eyes, open_masks(entry.masks, entry.frame_rate), camera)
                 eyes.eyes.append(Eye(camera, reduction, None))
             else:
-                source = open_pictures(entry.pictures, entry.frame_rate)
+                _add_source(eyes, open_pictures(entry.pictures, entry.frame_rate), camera)
                 eyes.eyes.append(Eye(camera, reduction, build_segmenter(entry, reduction)))
-            eyes.sources.append(source)
-            eyes._stack.callback(source.close)
-            if tuple(source.size) != tuple(camera.size):
-                raise InputError(
-                    f"camera {camera.name!r}",
-                    expected=f"pictures of {_sized(camera.size)} as calibrated",
-                    got=_sized(source.size),
-                    remedy="give the calibration of these pictures",
-                )
+        for place, (entry, camera) in enumerate(zip(job.cameras, rig, strict=True)) if with_pictures else ():
+            if entry.masks is not None:
+                _add_source(eyes, open_pictures(entry.pictures, entry.frame_rate), camera)
+                place = len(eyes.sources) - 1
+            eyes.shown.append(place)
     except BaseException:
         eyes._stack.close()
         raise
     return eyes
+
+
+def _add_source(eyes: Eyes, source: MaskSource | PictureSource, camera: Camera) -> None:
+    """Have the source closed with the others, and refuse it where it is not of the calibrated size."""
+    eyes.sources.append(source)
+    eyes._stack.callback(source.close)
+    if tuple(source.size) != tuple(camera.size):
+        raise InputError(
+            f"camera {camera.name!r}",
+            expected=f"pictures of {_sized(camera.size)} as calibrated",
+            got=_sized(source.size),
+            remedy="give the calibration of these pictures",
+        )
 
 
 def _sized(size: Sequence[int]) -> str:

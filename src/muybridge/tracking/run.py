@@ -28,6 +28,7 @@ from muybridge.io.job import Job, filter_config
 from muybridge.io.run_folder import RunWriter, write_summary
 from muybridge.io.run_log import create_log, job_digest, read_records
 from muybridge.io.synchronise import check_synchronised, synchronised
+from muybridge.likelihood.cues import CueWeights
 from muybridge.likelihood.observation import ImageLikelihood
 from muybridge.tracking.checkpoint import Checkpoint, read_checkpoint, write_checkpoint
 from muybridge.tracking.diagnostics import DiagnosticsWriter
@@ -80,6 +81,7 @@ class _Run:
 
     def __init__(self, job: Job, out: Path, progress: Progress | None) -> None:
         self.job, self.out, self.progress = job, out, progress
+        self.cues = cue_weights(job)
         self.digest = job_digest(msgspec.to_builtins(job, enc_hook=str))
         self.milliseconds: list[float] = []
         self.evaluations = self.frames = self.lost = 0
@@ -89,7 +91,7 @@ class _Run:
 
     def go(self, resume: bool) -> RunSummary:
         rig, body = rig_of_job(self.job), body_of_job(self.job)
-        with open_eyes(self.job, rig, reductions_of(self.job, rig, body)) as eyes:
+        with open_eyes(self.job, rig, reductions_of(self.job, rig, body), self.cues.need_pictures) as eyes:
             count = check_synchronised(eyes.sources)
             self.first, self.last = self.job.frames or (0, count - 1)
             if self.last >= count:
@@ -115,7 +117,7 @@ class _Run:
         eyes.eyes = [replace(eye, camera=rig[eye.camera.name]) for eye in eyes.eyes]
         rig = Rig(tuple(rig[eye.camera.name] for eye in eyes.eyes))
         config = TrackerConfig(self.job.filter.name, filter_config(self.job))
-        return Tracker(ImageLikelihood(body, rig, eyes.reductions), self._interval(eyes), config)
+        return Tracker(ImageLikelihood(body, rig, eyes.reductions, cues=self.cues), self._interval(eyes), config)
 
     def _track(self, eyes: Eyes, tracker: Tracker, checkpoint: Checkpoint | None) -> None:
         """The loop over frames."""
@@ -137,7 +139,7 @@ class _Run:
                     log.append(**{name: record[name] for name in record.dtype.names})
                 for index, seconds, images, began in self._frames(eyes, start):
                     masks = eyes.masks(images, tracker.predict(state))
-                    state, estimate = tracker.step(self._rng(index, 0), state, masks)
+                    state, estimate = tracker.step(self._rng(index, 0), state, masks, eyes.pictures(images))
                     elapsed = (time.perf_counter() - began) * 1e3
                     record = _record(index, seconds, estimate, elapsed)
                     log.append(**record)
@@ -190,6 +192,7 @@ class _Run:
         summary = RunSummary(status, self.frames, self.job.seed, evaluations, speed, memory)
         settings = {
             "filter": {"name": self.job.filter.name, **asdict(filter_config(self.job))},
+            "likelihood": asdict(self.cues),
             "reductions": list(tracker.model.reductions),
         }
         extra = self.preparation.to_dict() if self.preparation else {}
@@ -198,6 +201,12 @@ class _Run:
             {**asdict(summary), "settings": settings, "versions": _versions(), "lost_frames": self.lost, **extra},
         )
         return summary
+
+
+def cue_weights(job: Job) -> CueWeights:
+    """The job's `[likelihood]`."""
+    given = job.likelihood
+    return CueWeights(given.silhouette, given.colour, given.boundary, given.edges, given.silhouette_kind)
 
 
 def _log_fields(joints: int, dofs: int, cameras: int) -> dict[str, tuple[str, tuple[int, ...]]]:

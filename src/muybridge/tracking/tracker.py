@@ -18,6 +18,7 @@ from typing import Any
 import numpy as np
 
 from muybridge.filters import METHODS, CommonConfig, ConstantVelocity, Info, State, Weights, guided
+from muybridge.likelihood.colour import ColourReference
 from muybridge.likelihood.observation import ImageLikelihood, Observation
 
 TRACKED, DOUBTFUL, UNSEEN, LOST = "tracked", "doubtful", "unseen", "lost"
@@ -43,16 +44,20 @@ class TrackState:
     """What the next frame needs.
 
     usual_costs : (C,) running mean of each camera's cost; troubled : bad frames in a row; seen : good frames
+    reference : what the segments look like, where colour counts and a frame was seen
     """
 
     filter: State
     usual_costs: np.ndarray
     troubled: int = 0
     seen: int = 0
+    reference: ColourReference | None = None
 
     def to_arrays(self) -> dict[str, np.ndarray]:
         """Named arrays, for a checkpoint."""
         arrays = {f"filter_{name}": np.asarray(value) for name, value in vars(self.filter).items()}
+        if self.reference is not None:
+            arrays |= {"colour_histograms": self.reference.histograms, "colour_known": self.reference.known}
         return arrays | {
             "usual_costs": self.usual_costs,
             "troubled": np.array(self.troubled),
@@ -119,17 +124,23 @@ class Tracker:
         """The state that `TrackState.to_arrays` saved."""
         kind = METHODS[self.config.method].State
         own = {name.removeprefix("filter_"): value for name, value in arrays.items() if name.startswith("filter_")}
-        return TrackState(kind(**own), arrays["usual_costs"], int(arrays["troubled"]), int(arrays["seen"]))
+        seen = "colour_histograms" in arrays
+        reference = ColourReference(arrays["colour_histograms"], arrays["colour_known"]) if seen else None
+        return TrackState(kind(**own), arrays["usual_costs"], int(arrays["troubled"]), int(arrays["seen"]), reference)
 
     def predict(self, state: TrackState) -> np.ndarray:
         """(J, 3) metres: where the joints are expected in the next frame."""
         return self.model.body.joints(self._predicted(state))
 
     def step(
-        self, rng: np.random.Generator, state: TrackState, masks: Sequence[np.ndarray]
+        self,
+        rng: np.random.Generator,
+        state: TrackState,
+        masks: Sequence[np.ndarray],
+        pictures: Sequence[np.ndarray] | None = None,
     ) -> tuple[TrackState, Estimate]:
-        """One frame from its masks, C times (H, W) bool."""
-        return self.step_observed(rng, state, self.model.observe(masks))
+        """One frame from its masks, C times (H, W) bool, and its pictures, where the likelihood looks at them."""
+        return self.step_observed(rng, state, self.model.observe(masks, pictures))
 
     def step_observed(
         self, rng: np.random.Generator, state: TrackState, observation: Observation
@@ -138,7 +149,8 @@ class Tracker:
         seeing = observation.areas >= MINIMUM_AREA
         if not seeing.any():
             return self._unseen(state)
-        observation = replace(observation, model=self.weighted(state, seeing))
+        reference = self._reference(state, observation)
+        observation = replace(observation, model=self.weighted(state, seeing), reference=reference)
         method = METHODS[self.config.method]
         following, info = method.step(rng, state.filter, observation, self.dynamics, self.filter_config)
         if info.collapsed:
@@ -148,11 +160,19 @@ class Tracker:
         troubled = state.troubled + 1 if doubted else 0
         status = TRACKED if not doubted else LOST if troubled > self.config.patience else DOUBTFUL
         usual = state.usual_costs if doubted else _running_mean(state.usual_costs, costs, state.seen)
+        if reference is not None and not doubted:
+            reference = observation.updated_reference(following.estimate)
         body = self.model.body
         joints = body.joints(following.particles)
         sd = _joint_sd(joints, Weights(following.log_weights))
         estimate = Estimate(following.estimate, body.joints(following.estimate), sd, costs, status, info)
-        return TrackState(following, usual, troubled, state.seen + (not doubted)), estimate
+        return TrackState(following, usual, troubled, state.seen + (not doubted), reference), estimate
+
+    def _reference(self, state: TrackState, observation: Observation) -> ColourReference | None:
+        """What the segments look like: as known, else as at the first pose; None where colour does not count."""
+        if self.model.cues.colour == 0 or state.reference is not None:
+            return state.reference
+        return observation.first_reference(state.filter.estimate)
 
     def weighted(self, state: TrackState, seeing: np.ndarray) -> ImageLikelihood:
         """The model with cameras weighted by how well they usually agree, and blind ones left out."""
