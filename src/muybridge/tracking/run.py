@@ -166,6 +166,13 @@ class _Run:
                     break
                 kept.append(record)
                 self._write(writer, diagnostics, record)
+            if len(kept) < checkpoint.frames:
+                raise InputError(
+                    str(self.out / LOG_FILE),
+                    expected=f"the {checkpoint.frames} frames of the checkpoint",
+                    got=str(len(kept)),
+                    remedy="run without --resume",
+                )
         return kept
 
     def _write(self, writer: RunWriter, diagnostics: DiagnosticsWriter, record: Any) -> None:
