@@ -55,6 +55,9 @@ def _named_pose(path: Path, body: Body, table: dict[str, float]) -> np.ndarray:
             expected=f"a degree of freedom of {body.name!r}",
             remedy=f"they are {', '.join(body.dof_names)}",
         )
+    for name, value in table.items():
+        if not isinstance(value, int | float):
+            raise InputError(f"first pose {path}: {name}", expected="a number", got=repr(value))
     pose = np.array([float(table.get(name, 0.0)) for name in body.dof_names])
     if not np.isfinite(pose).all():
         raise InputError(f"first pose {path}", expected="finite numbers", got="nan or inf")
