@@ -45,6 +45,7 @@ POSTURES: tuple[Mapping[str, float], ...] = (
     },
     {"left_shoulder_flexion": 80, "right_shoulder_flexion": 80},
 )
+DRAWN_POSTURES = 3  # of a body that is no person: its limits are all that is known
 
 
 @dataclass(frozen=True)
@@ -118,19 +119,34 @@ def place_of_masks(rig: Rig, observation: Observation) -> np.ndarray:
 
 
 def _candidates(body: Body, place: np.ndarray, headings: int) -> list[np.ndarray]:
-    upright = _upright(body)
     poses = []
-    for posture in POSTURES if "left_hip_flexion" in body.dof_names else POSTURES[:1]:
-        for heading in range(headings):
-            pose = upright.copy()
-            for name, degrees in posture.items():
-                if name in body.dof_names:
-                    pose[body.dof_names.index(name)] = np.radians(degrees)
-            pose[body.dof_names.index("root_yaw")] += 2 * np.pi * heading / headings
-            centre = body.joints(pose).mean(axis=0)
-            pose[:3] += place - centre
-            poses.append(pose)
+    for number, posture in enumerate(_postures(body, headings)):
+        pose = posture.copy()
+        pose[body.dof_names.index("root_yaw")] += 2 * np.pi * (number % headings) / headings
+        centre = body.joints(pose).mean(axis=0)
+        pose[:3] += place - centre
+        poses.append(pose)
     return poses
+
+
+def _postures(body: Body, headings: int) -> list[np.ndarray]:
+    """Poses (D,), one a candidate: a person's by name; another body's at rest, then anywhere within its limits."""
+    upright = _upright(body)
+    if "left_hip_flexion" not in body.dof_names:
+        limited = np.isfinite(body.lower) & np.isfinite(body.upper)
+        low, high = np.where(limited, body.lower, upright), np.where(limited, body.upper, upright)
+        drawn = np.random.default_rng(0).uniform(
+            low, high, (DRAWN_POSTURES * headings, len(upright))
+        )  # always the same
+        return [upright] * headings + list(drawn)
+    postures = []
+    for posture in POSTURES:
+        pose = upright.copy()
+        for name, degrees in posture.items():
+            if name in body.dof_names:
+                pose[body.dof_names.index(name)] = np.radians(degrees)
+        postures += [pose] * headings
+    return postures
 
 
 def _upright(body: Body) -> np.ndarray:
