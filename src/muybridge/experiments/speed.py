@@ -15,11 +15,13 @@ from functools import lru_cache, partial
 import numpy as np
 
 from muybridge.body import Body, named_body
+from muybridge.cameras.model import Rig
 from muybridge.filters import METHODS, GaussianWalk
 from muybridge.likelihood.benchmark import bench_scene, time_likelihood
-from muybridge.likelihood.fusion import fuse
+from muybridge.likelihood.cues import CueWeights
 from muybridge.likelihood.observation import ImageLikelihood, Observation
 from muybridge.synthetic.scene import demo_scene, render, truth
+from muybridge.tracking.tracker import Tracker, TrackerConfig
 
 REDUCTION = 2
 """The demo's pictures of 640 x 480 become 320 x 240."""
@@ -75,15 +77,16 @@ def likelihood(rng: np.random.Generator) -> Iterator[Measurement]:
 
 
 def printed_demc(rng: np.random.Generator) -> Iterator[Measurement]:
-    """DE-MC as printed, 500 x 7, three cues, one camera of 320 x 240."""
+    """DE-MC as printed, 500 x 7, three cues, one camera of 320 x 240: whole frames, from mask and picture to joints."""
     scene = bench_scene("bodytrack")
-    cues = fuse(scene.cues["silhouette"], scene.cues["colour"], scene.cues["boundary"])
-    method, mean = METHODS["demc"], np.clip(scene.poses.mean(axis=0), scene.body.lower, scene.body.upper)
-    dynamics = GaussianWalk(np.full(len(mean), 0.02), scene.body.lower, scene.body.upper)
+    three = CueWeights(silhouette=1, colour=1, boundary=1, silhouette_kind="iou")
+    model = ImageLikelihood(scene.body, Rig((scene.camera,)), (1,), cues=three)
+    tracker = Tracker(model, 1 / 30, TrackerConfig("demc", METHODS["demc"].PRINTED))
+    mean = np.clip(scene.poses.mean(axis=0), scene.body.lower, scene.body.upper)
     for label, threads in (("one thread", 1), ("all threads", None)):
-        state = method.init(rng, mean, np.full(len(mean), 0.02), method.PRINTED)
+        state, _ = tracker.step(rng, tracker.init(rng, mean), [scene.mask], [scene.image])
         with limited_threads(threads):
-            seconds = median_seconds(partial(method.step, rng, state, cues, dynamics, method.PRINTED), 3)
+            seconds = median_seconds(partial(tracker.step, rng, state, [scene.mask], [scene.image]), 3)
         yield Measurement(f"DE-MC 500 x 7, three cues, one camera, {label}", 1 / seconds, "frames/s", 12, 30)
 
 
