@@ -91,11 +91,12 @@ class Config(CommonConfig):
     sharpness: float = 200.0  # K, where the likelihood weighs
     estimate: Literal["mean", "maximum"] = "mean"
     spreads: tuple[float, ...] = (0.2, 0.13, 0.085, 0.06, 0.045, 0.035, 0.03, 0.025)  # metres, one a step, falling
-    dependence: float = 7.0  # kappa; makes the 95 % regions hold on rendered scenes, see docs/benchmarks.md
+    dependence: float = 45.0  # kappa; makes the 95 % regions hold on rendered scenes, see docs/benchmarks.md
     blocks: tuple[tuple[int, ...], ...] = ()  # components that are drawn anew together, a block a frame; empty: never
-    redraws: int = 100  # likelihood evaluations spent on that
-    tries: int = 2  # of the best redraws, so many are climbed from
-    margin: float = 3.0  # log likelihood by which a redrawn limb must be better
+    redraws: int = 200  # likelihood evaluations spent on that
+    tries: int = 4  # of the best redraws, so many are climbed from
+    hopeful: float = 4.0  # log likelihood that a redraw may lack and still be climbed from
+    margin: float = 0.2  # log likelihood by which a redrawn limb must be better after its climb
     weighting: Literal["laplace", "likelihood", "importance"] = "laplace"  # equal | p(y|x) | p(y|x) p(x) / proposal
 
     def __post_init__(self) -> None:
@@ -198,7 +199,9 @@ def _redraw_limb(
     drawn = np.repeat(mode[None], config.redraws, axis=0)
     drawn[:, block] = rng.uniform(low, high, (config.redraws, block.size))
     here = float(counted.log_prob(mode[None])[0])
-    best = np.argsort(-counted.log_prob(drawn), kind="stable")[: config.tries]
+    scores = counted.log_prob(drawn)
+    best = np.argsort(-scores, kind="stable")[: config.tries]
+    best = best[config.sharpness * (scores[best] - here) > -config.hopeful]
     start = prediction
     for candidate in drawn[best]:
         climbed, other = climb(candidate, prior, likelihood, dynamics, config)

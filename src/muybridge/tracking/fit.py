@@ -27,7 +27,7 @@ class FitConfig:
     lengths: bool = True
     girths: bool = True  # widths and depths
     cameras: bool = False  # a shift of each camera's picture
-    length_sd: float = 0.08  # prior, of a log length
+    length_sd: float = 0.03  # prior, of a log length; wider, and a straight leg's knee wanders
     girth_sd: float = 0.20  # prior, of a log width or depth
     shift_sd: float = 0.05  # prior, metres at the person
     pose_sd: float = 0.10  # pull to the poses given, radians; a tenth of it in metres
