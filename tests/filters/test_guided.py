@@ -172,8 +172,8 @@ class TestRedraw:
         assert self.follow(self.CONFIG, TwoModes(), 5).estimate[1] == pytest.approx(LOW, abs=MODE_SD)
 
     def test_a_mode_hardly_better_is_left_alone(self) -> None:
-        """log 2 is less than the margin of 3."""
-        state = self.follow(replace(self.CONFIG, blocks=((1,),)), TwoModes(better=2.0), 5)
+        """log 2 is less than a margin of 3, however the method's own settings weigh it."""
+        state = self.follow(replace(self.CONFIG, blocks=((1,),), margin=3.0), TwoModes(better=2.0), 5)
         assert state.estimate[1] == pytest.approx(LOW, abs=MODE_SD)
 
     def test_a_jump_is_no_velocity(self) -> None:
