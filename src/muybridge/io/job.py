@@ -116,6 +116,19 @@ class FilterInput(Table, frozen=True):
     settings: dict[str, Any] = {}
 
 
+class MotionInput(Table, frozen=True):
+    """`[motion]`: what a prediction does not know, one standard deviation a second; the method's own where absent."""
+
+    root_speed: Weight | None = None
+    """Metres a second."""
+    root_turn_speed: Weight | None = None
+    """Radians a second."""
+    turn_speed: Weight | None = None
+    """Radians a second, of every other joint."""
+    velocity_gain: Annotated[float, Meta(ge=0, le=1)] | None = None
+    """Share of the last step that the prediction repeats."""
+
+
 class LikelihoodInput(Table, frozen=True):
     """`[likelihood]`: the weight of each cue against the others; 0 switches it off."""
 
@@ -151,6 +164,7 @@ class Job(Table, frozen=True):
     body: BodyInput = BodyInput()
     start: StartInput = StartInput()
     filter: FilterInput = FilterInput()
+    motion: MotionInput = MotionInput()
     likelihood: LikelihoodInput = LikelihoodInput()
     reference: ReferenceInput | None = None
 
@@ -164,7 +178,7 @@ class Job(Table, frozen=True):
 
 
 # The file reads in the order in which a person thinks of it, whatever order the fields need.
-ORDER = ("name", "seed", "frames", "calibration", "camera", "body", "start", "filter", "likelihood", "reference")
+ORDER = ("name", "seed", "frames", "calibration", "camera", "body", "start", "filter", "motion", "likelihood", "reference")
 
 
 def read(path: Path | str, overrides: Sequence[str] = ()) -> Job:

@@ -33,6 +33,7 @@ from muybridge.likelihood.observation import ImageLikelihood
 from muybridge.tracking.checkpoint import Checkpoint, read_checkpoint, write_checkpoint
 from muybridge.tracking.diagnostics import DiagnosticsWriter
 from muybridge.tracking.evidence import Eyes, open_eyes
+from muybridge.tracking.motion import Motion, motion_of
 from muybridge.tracking.prepare import Preparation, body_of_job, prepare, reductions_of, rig_of_job
 from muybridge.tracking.tracker import LOST, TRACKED, Estimate, Tracker, TrackerConfig, TrackState
 
@@ -116,8 +117,13 @@ class _Run:
         body, rig = read_body(self.out / BODY_FILE), read_rig(self.out / CAMERAS_FILE)
         eyes.eyes = [replace(eye, camera=rig[eye.camera.name]) for eye in eyes.eyes]
         rig = Rig(tuple(rig[eye.camera.name] for eye in eyes.eyes))
-        config = TrackerConfig(self.job.filter.name, filter_config(self.job))
+        config = TrackerConfig(self.job.filter.name, filter_config(self.job), self._motion())
         return Tracker(ImageLikelihood(body, rig, eyes.reductions, cues=self.cues), self._interval(eyes), config)
+
+    def _motion(self) -> Motion:
+        """The method's own, with the job's settings in place of it."""
+        given = {name: value for name, value in msgspec.to_builtins(self.job.motion).items() if value is not None}
+        return replace(motion_of(self.job.filter.name), **given)
 
     def _track(self, eyes: Eyes, tracker: Tracker, checkpoint: Checkpoint | None) -> None:
         """The loop over frames."""
@@ -199,6 +205,7 @@ class _Run:
         summary = RunSummary(status, self.frames, self.job.seed, evaluations, speed, memory)
         settings = {
             "filter": {"name": self.job.filter.name, **asdict(filter_config(self.job))},
+            "motion": asdict(tracker.motion),
             "likelihood": asdict(self.cues),
             "reductions": list(tracker.model.reductions),
         }

@@ -17,9 +17,10 @@ from typing import Any
 
 import numpy as np
 
-from muybridge.filters import METHODS, CommonConfig, ConstantVelocity, Info, State, Weights, guided
+from muybridge.filters import METHODS, CommonConfig, ConstantVelocity, Info, State, Weights, annealed, guided
 from muybridge.likelihood.colour import ColourReference
 from muybridge.likelihood.observation import ImageLikelihood, Observation
+from muybridge.tracking.motion import Motion, motion_of
 
 TRACKED, DOUBTFUL, UNSEEN, LOST = "tracked", "doubtful", "unseen", "lost"
 
@@ -30,9 +31,7 @@ class TrackerConfig:
 
     method: str = "guided"  # a row of filters.METHODS
     filter: CommonConfig | None = None  # None: the method's working settings
-    root_speed: float = 1.25  # metres a second, one standard deviation
-    turn_speed: float = 3.75  # radians a second, one standard deviation
-    velocity_gain: float = 0.5  # share of the last step that the prediction repeats; 1 feeds noise back
+    motion: Motion | None = None  # None: what suits the method
     doubtful_cost: float = 0.40  # two-sided silhouette cost from which a frame is doubted
     doubtful_ratio: float = 1.6  # or this many times the run's usual cost
     patience: int = 8  # doubted or unseen frames in a row after which the person counts as lost
@@ -100,18 +99,26 @@ class Tracker:
     @cached_property
     def dynamics(self) -> ConstantVelocity:
         """Constant velocity with noise in proportion to the time between frames."""
-        body = self.model.body
-        sd = np.full(len(body.dof_names), self.config.turn_speed * self.interval)
-        sd[:3] = self.config.root_speed * self.interval
-        return ConstantVelocity(sd, body.lower, body.upper, self.config.velocity_gain)
+        return self.motion.dynamics(self.model.body, self.interval)
+
+    @property
+    def motion(self) -> Motion:
+        """How the person is expected to move."""
+        return self.config.motion or motion_of(self.config.method)
 
     @cached_property
     def filter_config(self) -> Any:
         config = self.config.filter or METHODS[self.config.method].WORKING
         if isinstance(config, guided.Config) and not config.blocks:
-            limbs = [indices for name, indices in self.model.body.blocks.items() if name != "root"]
-            config = replace(config, blocks=tuple(tuple(indices.tolist()) for indices in limbs))
+            config = replace(config, blocks=self._limbs()[1:])
+        if isinstance(config, annealed.Config) and config.by_limb and config.blocks is None:
+            config = replace(config, blocks=self._limbs())
         return config
+
+    def _limbs(self) -> tuple[tuple[int, ...], ...]:
+        """Components of the root, then of each limb."""
+        blocks = self.model.body.blocks
+        return tuple(tuple(blocks[name].tolist()) for name in sorted(blocks, key=lambda name: name != "root"))
 
     def init(self, rng: np.random.Generator, pose: np.ndarray) -> TrackState:
         """A state that believes in one pose (D,)."""
@@ -181,7 +188,7 @@ class Tracker:
         return replace(self.model, weights=tuple(weights))
 
     def _predicted(self, state: TrackState) -> np.ndarray:
-        ahead = state.filter.estimate + self.config.velocity_gain * state.filter.velocity
+        ahead = state.filter.estimate + self.motion.velocity_gain * state.filter.velocity
         return np.clip(ahead, self.dynamics.lower, self.dynamics.upper)
 
     def _doubted(self, state: TrackState, costs: np.ndarray, seeing: np.ndarray) -> bool:
@@ -199,13 +206,14 @@ class Tracker:
         body = self.model.body
         joints = body.joints(pose)
         known = _joint_sd(body.joints(state.filter.particles), Weights(state.filter.log_weights))
-        drift = self.config.root_speed * self.interval * np.sqrt(troubled) * 2.0
+        drift = UNSEEN_SPEED * self.interval * np.sqrt(troubled) * 2.0
         status = LOST if troubled > self.config.patience else UNSEEN
         costs = np.full(len(self.model.rig), np.nan)
         estimate = Estimate(pose, joints, np.hypot(known, drift), costs, status, info)
         return replace(state, filter=standing, troubled=troubled), estimate
 
 
+UNSEEN_SPEED = 1.25  # metres a second that a person who is not seen may have moved, one standard deviation
 MINIMUM_AREA = 20  # reduced pixels; a mask with fewer shows nobody
 
 

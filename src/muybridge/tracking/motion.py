@@ -1,0 +1,49 @@
+"""How a person is expected to move between two frames, by filter method.
+
+The guided filter climbs to where the picture says the person is, so that its noise may be wide: the prior hardly matters.
+A filter that draws its candidates from the dynamics spends every bit of width on draws that miss.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+
+import numpy as np
+
+from muybridge.body.model import Body
+from muybridge.errors import InputError
+from muybridge.filters import ConstantVelocity
+
+
+@dataclass(frozen=True)
+class Motion:
+    """One standard deviation of what the prediction does not know, a second; and how much of the last step it repeats."""
+
+    root_speed: float = 1.25  # metres a second
+    root_turn_speed: float = 3.75  # radians a second
+    turn_speed: float = 3.75  # radians a second, of every other joint
+    velocity_gain: float = 0.5  # share of the last step that the prediction repeats; 1 feeds noise back
+
+    def __post_init__(self) -> None:
+        for setting in fields(self):
+            value = getattr(self, setting.name)
+            if not (np.isfinite(value) and value >= 0):
+                raise InputError(f"motion {setting.name!r}", expected="finite and not negative", got=repr(value))
+
+    def dynamics(self, body: Body, interval: float) -> ConstantVelocity:
+        """Constant velocity with noise in proportion to the time between frames, `interval` seconds."""
+        speeds = np.full(len(body.dof_names), self.turn_speed)
+        speeds[:3] = self.root_speed
+        root = [index for index, name in enumerate(body.dof_names) if index >= 3 and name.startswith("root_")]
+        speeds[root] = self.root_turn_speed
+        return ConstantVelocity(speeds * interval, body.lower, body.upper, self.velocity_gain)
+
+
+#: At 25 frames a second: 10 mm, 1.5 degrees for the root, 2.5 degrees for the limbs; see docs/benchmarks.md.
+SEARCHING = Motion(root_speed=0.25, root_turn_speed=0.65, turn_speed=1.1)
+MOTIONS = {"guided": Motion()}
+
+
+def motion_of(method: str) -> Motion:
+    """What was measured to suit the method."""
+    return MOTIONS.get(method, SEARCHING)
