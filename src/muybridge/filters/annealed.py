@@ -62,7 +62,7 @@ class Config(CommonConfig):
     contraction: float = 1.0  # between layers, distances to the mean times this; 1 is off (ours)
     exponents: tuple[float, ...] | None = None  # beta_1 ... beta_M given instead of found (times sharpness)
     blocks: Blocks | None = None  # components that layer m perturbs, taken in turn; None is all in every layer
-    by_limb: bool = False  # a tracker, which knows the body, sets blocks where there are none: the root, then each limb
+    by_limb: bool = False  # a tracker, which knows the body, fills in blocks: the root, then each limb
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -78,11 +78,11 @@ class Config(CommonConfig):
 
 
 PRINTED = Config(estimate="mean")  # the expectation: Deutscher et al. (2000), section 3
-# Measured on rendered scenes seen by four cameras, see docs/benchmarks.md, "The papers' filters": survival .1 beats .05 and
-# .2, shrinking by .71 beats .5, three rounds of limb blocks beat one or two, which beat five layers of the whole body;
-# contraction helps where there are many layers. 277 x 18 = 4986 evaluations.
-WORKING = Config(particles=277, layers=18, survival=0.1, shrink=0.71, contraction=0.8, by_limb=True, estimate="mean",
-                 resampling="systematic")  # fmt: skip
+# Measured on rendered scenes seen by four cameras, see docs/benchmarks.md, "The papers' filters": three rounds of limb
+# blocks beat one or two, which beat five layers of the whole body; shrinking by .71 beats .5; survival between .05 and
+# .2 makes little difference. 277 x 18 = 4986 evaluations.
+WORKING = Config(particles=277, layers=18, survival=0.1, shrink=0.71, contraction=0.8, by_limb=True,
+                 estimate="mean", resampling="systematic")  # fmt: skip
 
 
 def init(

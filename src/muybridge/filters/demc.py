@@ -82,9 +82,9 @@ class Config(CommonConfig):
 
 
 PRINTED = Config()
-# After selection most members are copies and their differences vanish: spread brought in by the dynamics keeps a moving
-# body. Few chains that run long beat many that run short: they have to climb, and only layers are steps. A constant jump
-# and a sharp likelihood let them. Measured, docs/benchmarks.md, "The papers' filters". 60 x (82 + 1) = 4980 evaluations.
+# After selection most members are copies and their differences vanish: spread brought in by the dynamics keeps a
+# moving body. Few chains that run long beat many that run short: they have to climb, and only layers are steps. Jumps
+# of constant size and a sharp likelihood let them; docs/benchmarks.md, "The papers' filters". 60 x (82 + 1) = 4980.
 WORKING = Config(particles=60, layers=82, c=0.05, difference_scale=0.27, sharpness=1000.0, dynamics_noise=0.5,
                  adaptation="off", partners="other_half", estimate="mean", resampling="systematic")  # fmt: skip
 

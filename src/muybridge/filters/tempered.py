@@ -73,8 +73,8 @@ class Config(CommonConfig):
 
 
 PRINTED = Config(estimate="mean")  # no paper prints exactly this; a likelihood that is a likelihood, sharpness 1
-# As for DE-MC, few particles that move often beat many that move seldom; survival .9 makes the rises small enough for them.
-# Measured, docs/benchmarks.md, "The papers' filters". 60 x (82 + 1) = 4980 evaluations.
+# As for DE-MC, few particles that move often beat many that move seldom; survival .9 makes the rises small enough for
+# them. Measured: docs/benchmarks.md, "The papers' filters". 60 x (82 + 1) = 4980 evaluations.
 WORKING = Config(particles=60, layers=82, survival=0.9, shrink=1.0, sharpness=1000.0, estimate="mean",
                  resampling="systematic")  # fmt: skip
 

@@ -178,7 +178,19 @@ class Job(Table, frozen=True):
 
 
 # The file reads in the order in which a person thinks of it, whatever order the fields need.
-ORDER = ("name", "seed", "frames", "calibration", "camera", "body", "start", "filter", "motion", "likelihood", "reference")
+ORDER = (
+    "name",
+    "seed",
+    "frames",
+    "calibration",
+    "camera",
+    "body",
+    "start",
+    "filter",
+    "motion",
+    "likelihood",
+    "reference",
+)
 
 
 def read(path: Path | str, overrides: Sequence[str] = ()) -> Job:

@@ -1,7 +1,7 @@
 """How a person is expected to move between two frames, by filter method.
 
-The guided filter climbs to where the picture says the person is, so that its noise may be wide: the prior hardly matters.
-A filter that draws its candidates from the dynamics spends every bit of width on draws that miss.
+The guided filter climbs to where the picture says the person is, so that its noise may be wide: the prior hardly
+matters. A filter that draws its candidates from the dynamics spends every bit of width on draws that miss.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from muybridge.filters import ConstantVelocity
 
 @dataclass(frozen=True)
 class Motion:
-    """One standard deviation of what the prediction does not know, a second; and how much of the last step it repeats."""
+    """What the prediction does not know, one standard deviation a second; how much of the last step it repeats."""
 
     root_speed: float = 1.25  # metres a second
     root_turn_speed: float = 3.75  # radians a second
