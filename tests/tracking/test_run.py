@@ -167,12 +167,12 @@ class TestResume:
 
 
 class TestMemory:
-    """What is held does not grow with the clip: the highest use over ten frames is that over all others, to 5 %.
+    """What is held does not grow with the clip: the highest use over sixty frames is that over all others, to 5 %.
 
     Counted by Python, with NumPy's arrays; a single mask (192 x 144) kept a frame would be 5 % after a few frames.
     """
 
-    WARM, SHORT, LONG = 20, 30, 300
+    WARM, SHORT, LONG = 20, 80, 300  # the short part holds a whole there and back, so every size of box that there is
 
     @pytest.fixture(scope="class")
     def long(self, made: Path) -> Path:
