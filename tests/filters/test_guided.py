@@ -136,11 +136,12 @@ class TwoModes:
 
     better: float = 100.0
     place: float = 0.0
+    misfit: float = 0.0  # minus the log likelihood at the lower mode
 
     def log_prob(self, poses: np.ndarray) -> np.ndarray:
         x = poses[:, 1]
         both = np.logaddexp(-0.5 * ((x - LOW) / MODE_SD) ** 2, np.log(self.better) - 0.5 * ((x - HIGH) / MODE_SD) ** 2)
-        return both - 0.5 * ((poses[:, [0, 2]] - self.place) ** 2).sum(axis=1) / MODE_SD**2
+        return both - self.misfit - 0.5 * ((poses[:, [0, 2]] - self.place) ** 2).sum(axis=1) / MODE_SD**2
 
     def normal_equations(self, pose: np.ndarray, spread: float) -> NormalEquations:
         """The nearer mode's."""
@@ -171,10 +172,12 @@ class TestRedraw:
         """Negative control: the climb alone stays where it is."""
         assert self.follow(self.CONFIG, TwoModes(), 5).estimate[1] == pytest.approx(LOW, abs=MODE_SD)
 
-    def test_a_mode_hardly_better_is_left_alone(self) -> None:
-        """log 2 is less than a margin of 3, however the method's own settings weigh it."""
-        state = self.follow(replace(self.CONFIG, blocks=((1,),), margin=3.0), TwoModes(better=2.0), 5)
-        assert state.estimate[1] == pytest.approx(LOW, abs=MODE_SD)
+    @pytest.mark.parametrize(("improvement", "mode"), [(0.1, LOW), (0.05, HIGH)])
+    def test_a_mode_hardly_better_is_left_alone(self, improvement: float, mode: float) -> None:
+        """log 2 = 0.69 is less than a tenth of a misfit of 10, and more than a twentieth."""
+        config = replace(self.CONFIG, blocks=((1,),), improvement=improvement)
+        state = self.follow(config, TwoModes(better=2.0, misfit=10.0), 5)
+        assert state.estimate[1] == pytest.approx(mode, abs=MODE_SD)
 
     def test_a_jump_is_no_velocity(self) -> None:
         """The redrawn component's velocity is what the climb did after the jump, not the jump of 2.

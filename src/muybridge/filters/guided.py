@@ -26,8 +26,8 @@ assumed, found in each frame, and kappa the number of neighbouring residuals tha
 
 A climb finds the nearest mode, and a limb that left the picture's outline (an arm that crossed the trunk) may be found
 by no climb again. So in every frame one block of components, a limb, is also drawn anew all over its range; the draws
-that the likelihood likes best are climbed from, and taken if that explains the picture better by `margin` in log
-likelihood.
+that the likelihood likes best are climbed from, and taken if the climb ends with clearly less misfit. How much less is
+a share of the misfit there is: where masks are bad, chance differences are larger too.
 
 Cost: `len(spreads)` looks at the contour and N likelihood evaluations a frame; with blocks, `redraws` evaluations and
 about twice the looks more.
@@ -96,13 +96,14 @@ class Config(CommonConfig):
     redraws: int = 200  # likelihood evaluations spent on that
     tries: int = 4  # of the best redraws, so many are climbed from
     hopeful: float = 4.0  # log likelihood that a redraw may lack and still be climbed from
-    margin: float = 0.2  # log likelihood by which a redrawn limb must be better after its climb
+    improvement: float = 0.02  # share of the negative log likelihood, by which a climbed redraw must be better
     weighting: Literal["laplace", "likelihood", "importance"] = "laplace"  # equal | p(y|x) | p(y|x) p(x) / proposal
 
     def __post_init__(self) -> None:
         super().__post_init__()
         falling = all(s > 0 for s in self.spreads) and list(self.spreads) == sorted(self.spreads, reverse=True)
         require("spreads", len(self.spreads) > 0 and falling, "positive metres, falling", self.spreads)
+        require("improvement", self.improvement >= 0, "0 or more", self.improvement)
         require("dependence", self.dependence > 0, "above 0", self.dependence)
         require(
             "weighting",
@@ -206,7 +207,7 @@ def _redraw_limb(
     for candidate in drawn[best]:
         climbed, other = climb(candidate, prior, likelihood, dynamics, config)
         there = float(counted.log_prob(climbed[None])[0])
-        if config.sharpness * (there - here) > config.margin:
+        if there - here > config.improvement * abs(here):
             start, mode, seen, here = prediction.copy(), climbed, other, there
             start[block] = candidate[block]
     return start, mode, seen
