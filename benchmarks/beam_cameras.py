@@ -2,7 +2,7 @@
 
     python benchmarks/beam_cameras.py JOB.toml [--cameras 4 3 2 1] [--seeds 3] [--set KEY=VALUE ...]
 
-JOB.toml is what `muybridge sample beam --reference FILE.trc` or `write_beam_job` wrote. A single camera starts from the
+JOB.toml is what `muybridge.datasets.samples.write_beam_job` wrote, with a [reference]. A single camera starts from the
 reference's first pose; more find their own.
 """
 
@@ -21,7 +21,9 @@ from muybridge.evaluation import evaluate
 from muybridge.io.job import Job, StartInput, read
 from muybridge.tracking import run
 
-LIMBS = [f"{side}_{joint}" for side in ("left", "right") for joint in ("shoulder", "elbow", "wrist", "hip", "knee", "ankle")]
+LIMBS = [
+    f"{side}_{joint}" for side in ("left", "right") for joint in ("shoulder", "elbow", "wrist", "hip", "knee", "ankle")
+]
 JOINTS = ["thorax", *LIMBS]
 
 
@@ -52,7 +54,9 @@ def main() -> None:
     parser.add_argument("--set", nargs="*", default=[])
     args = parser.parse_args()
     job = read(args.job, args.set)
-    print("| cameras | seed | mean mm | worst frame mm | lost wrists | swapped legs | ms a frame |\n|---|---|---|---|---|---|---|")
+    print(
+        "| cameras | seed | mean mm | worst frame mm | lost wrists | swapped legs | ms a frame |\n|---|---|---|---|---|---|---|"
+    )
     for count in args.cameras:
         for chosen in itertools.combinations(job.cameras, count):
             fewer = msgspec.structs.replace(job, cameras=tuple(chosen))

@@ -2,8 +2,8 @@
 
     python benchmarks/spoil_bodytrack.py SCENE OUT [--length 0.05] [--pixels 2] [--seed 1] [--same-sign]
 
-Every length of the body file is made `length` too long or too short (at random, or all too long), and every principal point
-is moved by `pixels` in a random direction. Pictures are linked, truth is copied.
+Every length of the body file is made `length` too long or too short (at random, or all too long), and every principal
+point is moved by `pixels` in a random direction. Pictures are linked, truth is copied.
 """
 
 from __future__ import annotations
