@@ -55,7 +55,8 @@ def main() -> None:
     args = parser.parse_args()
     job = read(args.job, args.set)
     print(
-        "| cameras | seed | mean mm | worst frame mm | lost wrists | swapped legs | ms a frame |\n|---|---|---|---|---|---|---|"
+        "| cameras | seed | mean mm | worst frame mm | lost wrists | swapped legs | ms a frame |\n"
+        "|---|---|---|---|---|---|---|"
     )
     for count in args.cameras:
         for chosen in itertools.combinations(job.cameras, count):
