@@ -190,7 +190,15 @@ def test_ctrl_c_keeps_what_was_finished(scene: Path) -> None:
     # Many particles make a frame slow enough to be interrupted.
     command += ["--set", "filter.name=condensation", "--set", "filter.particles=100000"]
     environment = {**os.environ, "PYTHONPATH": str(SOURCES)}
-    process = subprocess.Popen(command, env=environment, stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+    process = subprocess.Popen(
+        command,
+        env=environment,
+        stderr=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        text=True,
+        # A shell's background job ignores the interrupt, and so would everything started from it.
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),
+    )
     joints = out / "joints.csv"
     deadline = time.monotonic() + 120
     while process.poll() is None and time.monotonic() < deadline:

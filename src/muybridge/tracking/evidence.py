@@ -16,7 +16,7 @@ from muybridge.cameras.model import Camera, Rig
 from muybridge.errors import InputError
 from muybridge.io.job import CameraInput, Job, background_config
 from muybridge.io.video import MaskSource, PictureSource, open_masks, open_pictures
-from muybridge.segmentation import BACKGROUND_MODELS, CleaningConfig, Segmenter, ShadowConfig, clean, reduce_image
+from muybridge.segmentation import BACKGROUND_MODELS, CleaningConfig, Segmenter, ShadowConfig, reduce_image
 
 MARGIN_M = 0.45  # metres round the expected joints in which the person is looked for
 MEDIAN = 5  # pixels of a ready-made mask; takes speckle away
@@ -76,10 +76,20 @@ def _inside(mask: np.ndarray, box: tuple[int, int, int, int] | None, median: int
 
 
 def _connected(mask: np.ndarray, reduction: int) -> np.ndarray:
-    """A ready-made mask without pieces that lie apart from the person."""
-    return clean(
-        mask, CleaningConfig(median=1, largest_hole=0, smallest_fragment=SMALLEST * reduction**2, gap=GAP * reduction)
-    )
+    """A ready-made mask without pieces that lie apart from the person; worked out at half size, which is enough."""
+    half = np.ascontiguousarray(mask[::2, ::2]).view(np.uint8)
+    count, labels, stats, _ = cv2.connectedComponentsWithStats(half, connectivity=8)
+    if count < 3:
+        return mask
+    main = 1 + int(np.argmax(stats[1:, cv2.CC_STAT_AREA]))
+    side = 2 * round(0.5 * GAP * reduction) + 1
+    surroundings = cv2.dilate((labels == main).view(np.uint8), np.ones((side, side), np.uint8)).view(bool)
+    near = np.bincount(labels[surroundings], minlength=count) > 0
+    keep = near & (stats[:, cv2.CC_STAT_AREA] >= 0.25 * SMALLEST * reduction**2)
+    keep[0] = False
+    keep[main] = True
+    kept = np.repeat(np.repeat(keep[labels], 2, axis=0), 2, axis=1)[: mask.shape[0], : mask.shape[1]]
+    return mask & kept
 
 
 @dataclass
