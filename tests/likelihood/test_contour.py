@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from muybridge.cameras.model import Rig
-from muybridge.likelihood.contour import SHORTEST_BORDER, mask_borders, moved_by, no_borders, robust_weights
+from muybridge.likelihood.contour import SHORTEST_BORDER, mask_borders, no_borders, robust_weights
 from muybridge.likelihood.observation import MINIMUM_SD, UNCOVERED_SPREAD, ImageLikelihood
 from muybridge.likelihood.pictures import camera_rows
 from reference.scene import camera, standing
@@ -154,7 +154,7 @@ def _without_borders(observation, pose: np.ndarray, spread: float) -> np.ndarray
 def test_moved_by_is_what_moves(scene) -> None:
     """A degree of freedom moves a segment if its ends go anywhere when it is changed."""
     model, pose, _ = scene
-    body, moved = model.body, moved_by(model.body.arrays, len(pose))
+    body, moved = model.body, model.body.moved_by
     before = body.frames(pose[None])[0]
     for dof in range(len(pose)):
         changed = pose.copy()

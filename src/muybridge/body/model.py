@@ -87,6 +87,30 @@ class Body:
     def arrays(self) -> BodyArrays:
         return arrays_of(self.segments)
 
+    @cached_property
+    def moved_by(self) -> np.ndarray:
+        """(S, D) bool: whether a degree of freedom moves a segment."""
+        arrays = self.arrays
+        moved = np.zeros((len(self.segments), len(self.dof_names)), bool)
+        moved[:, :3] = True
+        for segment, parent in enumerate(arrays.parent):
+            if parent >= 0:
+                moved[segment] |= moved[parent]
+            own = arrays.dof[segment]
+            moved[segment, own[own >= 0]] = True
+        return moved
+
+    @cached_property
+    def parts_below(self) -> np.ndarray:
+        """(S,) int64: how many segments that have a shape hang on a segment, directly or not."""
+        below = np.zeros(len(self.segments), np.int64)
+        for segment in self.arrays.shaped:
+            ancestor = self.arrays.parent[segment]
+            while ancestor >= 0:
+                below[ancestor] += 1
+                ancestor = self.arrays.parent[ancestor]
+        return below
+
     def frames(self, poses: np.ndarray) -> np.ndarray:
         """Segment frames in the world.
 

@@ -18,7 +18,7 @@ import cv2
 import numpy as np
 
 from muybridge._kernels import contour as kernel
-from muybridge.body.model import Body, BodyArrays
+from muybridge.body.model import Body
 
 SIDE_POINTS = 8  # along each side line of a segment
 REACH = 1.5  # the border is searched up to this many spreads away
@@ -94,27 +94,9 @@ def no_borders(cameras: int) -> Borders:
 def stiffness(body: Body) -> np.ndarray:
     """(S,) float64: how much further than it is a segment counts from a border point that nothing covers.
 
-    What hangs at the end of a chain moves most freely: a hand counts once, an upper arm with two parts below it twice.
+    What hangs at the end of a chain moves most freely: a hand counts once, an upper arm with two parts below it thrice.
     """
-    parent, below = body.arrays.parent, np.zeros(len(body.segments))
-    for segment in body.arrays.shaped[::-1]:
-        ancestor = parent[segment]
-        while ancestor >= 0:
-            below[ancestor] += 1
-            ancestor = parent[ancestor]
-    return np.minimum(1.0 + STIFFER * below, STIFFEST)
-
-
-def moved_by(arrays: BodyArrays, dofs: int) -> np.ndarray:
-    """(S, D) bool: whether a degree of freedom moves a segment."""
-    moved = np.zeros((len(arrays.parent), dofs), bool)
-    moved[:, :3] = True
-    for segment, parent in enumerate(arrays.parent):
-        if parent >= 0:
-            moved[segment] |= moved[parent]
-        own = arrays.dof[segment]
-        moved[segment, own[own >= 0]] = True
-    return moved
+    return np.minimum(1.0 + STIFFER * body.parts_below, STIFFEST)
 
 
 def contour_rows(
@@ -146,7 +128,7 @@ def contour_rows(
     count = kernel.contour_rows(
         np.ascontiguousarray(pose, np.float64),
         *arrays,
-        moved_by(arrays, dofs),
+        body.moved_by,
         cameras,
         shares,
         borders.points,

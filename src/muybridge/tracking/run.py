@@ -38,6 +38,7 @@ from muybridge.tracking.prepare import Preparation, body_of_job, prepare, reduct
 from muybridge.tracking.tracker import LOST, TRACKED, Estimate, Tracker, TrackerConfig, TrackState
 
 CHECKPOINT_EVERY = 25  # frames
+READ_AHEAD = 2  # frames that are decoded beside the tracking
 LOG_FILE, BODY_FILE, CAMERAS_FILE = "track.log", "body.toml", "cameras.json"
 STATUSES = (TRACKED, "doubtful", "unseen", LOST)
 
@@ -159,7 +160,7 @@ class _Run:
     def _frames(self, eyes: Eyes, start: int) -> Iterator[tuple[int, float, list[np.ndarray], float]]:
         """Frames with the moment at which reading them began."""
         began = time.perf_counter()
-        for index, seconds, images in synchronised(eyes.sources, start, self.last + 1):
+        for index, seconds, images in synchronised(eyes.sources, start, self.last + 1, ahead=READ_AHEAD):
             yield index, seconds, images, began
             began = time.perf_counter()
 
