@@ -88,7 +88,10 @@ def _connected(mask: np.ndarray, reduction: int) -> np.ndarray:
     keep = near & (stats[:, cv2.CC_STAT_AREA] >= 0.25 * SMALLEST * reduction**2)
     keep[0] = False
     keep[main] = True
-    kept = np.repeat(np.repeat(keep[labels], 2, axis=0), 2, axis=1)[: mask.shape[0], : mask.shape[1]]
+    wider = cv2.dilate(keep[labels].view(np.uint8), np.ones((3, 3), np.uint8)).view(
+        bool
+    )  # no border pixel is shaved off
+    kept = np.repeat(np.repeat(wider, 2, axis=0), 2, axis=1)[: mask.shape[0], : mask.shape[1]]
     return mask & kept
 
 
