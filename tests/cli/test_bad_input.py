@@ -210,3 +210,4 @@ def test_ctrl_c_keeps_what_was_finished(scene: Path) -> None:
     assert process.returncode == 130, complaint
     assert complaint.count("\n") == 1 and str(out) in complaint
     assert len(read_joints(out).frames) >= 1
+    assert json.loads((out / "run.json").read_text())["status"] == "interrupted"

@@ -104,7 +104,12 @@ class _Run:
                 write_body(self.out / BODY_FILE, prepared.model.body)
                 write_rig(self.out / CAMERAS_FILE, prepared.model.rig)
             tracker = self._tracker(eyes)
-            self._track(eyes, tracker, checkpoint)
+            try:
+                self._track(eyes, tracker, checkpoint)
+            except KeyboardInterrupt:
+                if self.frames:
+                    self._summarise(tracker, interrupted=True)
+                raise
             return self._summarise(tracker)
 
     def _prepare(self, eyes: Eyes, body: Body) -> Preparation:
@@ -197,8 +202,9 @@ class _Run:
         """A generator of its own for every frame: results depend on neither interruptions nor threads."""
         return np.random.default_rng([self.job.seed, frame, purpose])
 
-    def _summarise(self, tracker: Tracker) -> RunSummary:
+    def _summarise(self, tracker: Tracker, *, interrupted: bool = False) -> RunSummary:
         status = "lost" if self.last_status == LOST or self.lost > 0.5 * self.frames else "done"
+        status = "interrupted" if interrupted else status
         times = np.array(self.milliseconds)
         speed = {"median": float(np.median(times)), "p95": float(np.percentile(times, 95))}
         memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0
