@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from muybridge.likelihood.contour import Borders, contour_rows
+from muybridge.likelihood.pictures import FULL
 from reference import contour as slow
 from reference.scene import SLOW, WIDE, camera, count, random_poses, rows, standing
 from reference.silhouette import model_mask
@@ -18,9 +19,9 @@ def found(request):
     body, pose = standing()
     view = rows(camera(0.4, (320, 240), DISTANCE, distortion=request.param))
     rng = np.random.default_rng(20)
-    mask = model_mask(random_poses(rng, pose, 1, 0.02, 0.1)[0], body.arrays, view[0]).astype(np.float32)[None]
+    mask = model_mask(random_poses(rng, pose, 1, 0.02, 0.1)[0], body.arrays, view[0])[None]
     nothing = Borders(np.zeros((1, 1, 2)), np.zeros(1, np.int64))
-    residuals = contour_rows(body, view, mask, nothing, pose, 0.1)
+    residuals = contour_rows(body, view, mask.astype(np.uint8) * np.uint8(FULL), nothing, pose, 0.1)
     chosen = rng.permutation(len(residuals.distance))[: count(60)]
     return body, pose, view, mask[0], residuals, chosen
 

@@ -31,8 +31,10 @@ class Scripted:
         self.answered.append(answer if self.damage is None else self.damage(poses, answer))
         return self.answered[-1]
 
-    def normal_equations(self, pose: np.ndarray, spread: float) -> NormalEquations:
-        return GaussianLikelihood(np.zeros(pose.size), 0.3).normal_equations(pose, spread)
+    def normal_equations(
+        self, pose: np.ndarray, spread: float, components: np.ndarray | None = None
+    ) -> NormalEquations:
+        return GaussianLikelihood(np.zeros(pose.size), 0.3).normal_equations(pose, spread, components)
 
 
 def all_of(value: float) -> Callable[[np.ndarray, np.ndarray], np.ndarray]:

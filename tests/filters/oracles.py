@@ -20,9 +20,11 @@ class GaussianLikelihood:
     def log_prob(self, poses: np.ndarray) -> np.ndarray:
         return -0.5 * (((poses - self.observation) / self.sd) ** 2).sum(axis=1)
 
-    def normal_equations(self, pose: np.ndarray, spread: float) -> NormalEquations:
+    def normal_equations(
+        self, pose: np.ndarray, spread: float, components: np.ndarray | None = None
+    ) -> NormalEquations:
         """The same, as a filter that climbs wants to know it; exact, so that `spread` is not needed."""
-        return NormalEquations(np.eye(pose.size) / self.sd**2, (self.observation - pose) / self.sd**2)
+        return NormalEquations(np.eye(pose.size) / self.sd**2, (self.observation - pose) / self.sd**2).of(components)
 
 
 @dataclass(frozen=True)
@@ -32,6 +34,12 @@ class NormalEquations:
     curvature: np.ndarray
     gradient: np.ndarray
     noise: float = 1.0
+
+    def of(self, components: np.ndarray | None) -> NormalEquations:
+        """Of some components (B,), the others standing."""
+        if components is None:
+            return self
+        return NormalEquations(self.curvature[np.ix_(components, components)], self.gradient[components], self.noise)
 
 
 @dataclass(frozen=True)

@@ -29,9 +29,11 @@ class Linear:
     def log_prob(self, poses: np.ndarray) -> np.ndarray:
         return -0.5 * ((poses @ SEES.T - self.measured) ** 2 / VARIANCE).sum(axis=1)
 
-    def normal_equations(self, pose: np.ndarray, spread: float) -> NormalEquations:
+    def normal_equations(
+        self, pose: np.ndarray, spread: float, components: np.ndarray | None = None
+    ) -> NormalEquations:
         weighted = SEES.T / VARIANCE
-        return NormalEquations(weighted @ SEES, weighted @ (self.measured - SEES @ pose), self.noise)
+        return NormalEquations(weighted @ SEES, weighted @ (self.measured - SEES @ pose), self.noise).of(components)
 
 
 def measurements(frames: int) -> np.ndarray:
@@ -143,10 +145,40 @@ class TwoModes:
         both = np.logaddexp(-0.5 * ((x - LOW) / MODE_SD) ** 2, np.log(self.better) - 0.5 * ((x - HIGH) / MODE_SD) ** 2)
         return both - self.misfit - 0.5 * ((poses[:, [0, 2]] - self.place) ** 2).sum(axis=1) / MODE_SD**2
 
-    def normal_equations(self, pose: np.ndarray, spread: float) -> NormalEquations:
+    def normal_equations(
+        self, pose: np.ndarray, spread: float, components: np.ndarray | None = None
+    ) -> NormalEquations:
         """The nearer mode's."""
         target = np.array([self.place, HIGH if pose[1] > 0 else LOW, self.place])
-        return NormalEquations(np.eye(SIZE) / MODE_SD**2, (target - pose) / MODE_SD**2)
+        return NormalEquations(np.eye(SIZE) / MODE_SD**2, (target - pose) / MODE_SD**2).of(components)
+
+
+class TestClimb:
+    DYNAMICS = GaussianWalk(WALK_SD)
+
+    def test_the_others_stand(self) -> None:
+        """Of a Gaussian, some components given the others: mean_B - H_BB^-1 H_BA (x_A - mean_A), H = H_L + Lambda."""
+        likelihood, start, prior = Linear(measurements(1)[0]), np.array([0.1, -0.2, 0.05]), np.diag(WALK_SD**-2)
+        moved, given = np.array([0, 2]), np.array([1])
+        mode, seen = guided.climb(start, prior, likelihood, self.DYNAMICS, (1.0,) * 8, moved)
+        whole, there = guided.climb(start, prior, likelihood, self.DYNAMICS, (1.0,) * 8)
+        precision = there.curvature + prior
+        away = np.linalg.solve(
+            precision[np.ix_(moved, moved)], precision[np.ix_(moved, given)] @ (start - whole)[given]
+        )
+        assert mode[1] == start[1] != pytest.approx(whole[1])
+        np.testing.assert_allclose(mode[moved], whole[moved] - away, atol=1e-12)
+        assert seen.curvature.shape == (2, 2)
+
+    def test_a_block_set_free_has_no_past(self) -> None:
+        """Its covariance with the others is cut, its own is what is said; the others keep theirs."""
+        covariance = np.array([[0.04, 0.01, 0.0], [0.01, 0.09, 0.02], [0.0, 0.02, 0.25]])
+        prior = guided._Prior(np.zeros(SIZE), covariance, self.DYNAMICS)
+        free = prior.freed(np.array([1]), np.array([0.7]), 0.5)
+        assert free.mean.tolist() == [0.0, 0.7, 0.0]
+        expected = np.array([[0.04, 0.0, 0.0], [0.0, 0.25, 0.0], [0.0, 0.0, 0.25]])
+        np.testing.assert_allclose(np.linalg.inv(free.precision), expected, rtol=1e-8)  # limits: 1e-9 of a precision
+        assert covariance[1, 1] == 0.09
 
 
 class TestRedraw:
@@ -195,7 +227,16 @@ class TestRedraw:
 
 @pytest.mark.parametrize(
     "settings",
-    [{"spreads": ()}, {"spreads": (0.1, 0.2)}, {"spreads": (0.1, 0.0)}, {"dependence": 0.0}, {"weighting": "equal"}],
+    [
+        {"spreads": ()},
+        {"spreads": (0.1, 0.2)},
+        {"spreads": (0.1, 0.0)},
+        {"dependence": 0.0},
+        {"weighting": "equal"},
+        {"freedom": 0.0},
+        {"redraws": -1},
+        {"tries": 0},
+    ],
 )
 def test_settings_that_make_no_sense(settings: dict) -> None:
     with pytest.raises(InputError):

@@ -10,7 +10,7 @@ import pytest
 from muybridge.cameras.model import Rig
 from muybridge.likelihood.contour import SHORTEST_BORDER, mask_borders, no_borders, robust_weights
 from muybridge.likelihood.observation import MINIMUM_SD, UNCOVERED_SPREAD, ImageLikelihood
-from muybridge.likelihood.pictures import camera_rows
+from muybridge.likelihood.pictures import FULL, HALF, camera_rows
 from reference.scene import camera, standing
 from reference.silhouette import model_mask
 
@@ -106,8 +106,8 @@ class TestRobustWeights:
 class TestBorders:
     def test_of_a_rectangle(self) -> None:
         """20 x 10 pixels have 2 (20 + 10) - 4 on their border; every sixth is taken, and lies on it."""
-        share = np.zeros((2, 40, 50), np.float32)
-        share[0, 5:15, 10:30] = 1.0
+        share = np.zeros((2, 40, 50), np.uint8)
+        share[0, 5:15, 10:30] = FULL
         borders = mask_borders(share)
         assert borders.counts.tolist() == [-(-56 // 6), 0]
         x, y = borders.points[0, : borders.counts[0]].T
@@ -116,21 +116,21 @@ class TestBorders:
 
     def test_speckle_is_left_out(self) -> None:
         side = SHORTEST_BORDER // 4  # 4 side - 4 pixels long
-        share = np.zeros((1, 40, 50), np.float32)
-        share[0, 10 : 10 + side, 10 : 10 + side] = 1.0
+        share = np.zeros((1, 40, 50), np.uint8)
+        share[0, 10 : 10 + side, 10 : 10 + side] = FULL
         assert mask_borders(share).counts.tolist() == [0]
-        share[0, 10 : 12 + side, 10 : 12 + side] = 1.0
+        share[0, 10 : 12 + side, 10 : 12 + side] = FULL
         assert mask_borders(share, spacing=1).counts.tolist() == [4 * (side + 2) - 4]
 
     def test_half_covered_pixels_belong_to_the_mask(self) -> None:
-        share = np.zeros((1, 40, 50), np.float32)
-        share[0, 5:25, 5:25], share[0, 5:25, 25] = 1.0, 0.49
+        share = np.zeros((1, 40, 50), np.uint8)
+        share[0, 5:25, 5:25], share[0, 5:25, 25] = FULL, HALF - 1
         points = mask_borders(share, spacing=1).points[0]
         assert points[:, 0].max() == 24
 
     def test_no_cameras_no_borders(self) -> None:
         assert no_borders(3).counts.tolist() == [0, 0, 0]
-        assert mask_borders(np.zeros((0, 4, 4), np.float32)).counts.size == 0
+        assert mask_borders(np.zeros((0, 4, 4), np.uint8)).counts.size == 0
 
     def test_pull_limbs_only_while_the_search_is_coarse(self, scene) -> None:
         """A raised arm's border, which a body with its arms down leaves uncovered."""

@@ -13,7 +13,7 @@ from reference.silhouette import outlines
 
 def look(mask: np.ndarray, x: float, y: float) -> float:
     """Bilinear value of a mask (H, W), 0 outside."""
-    padded = np.pad(mask, 1)
+    padded = np.pad(mask.astype(float), 1)
     x, y = np.clip(x + 1, 0, padded.shape[1] - 1.000001), np.clip(y + 1, 0, padded.shape[0] - 1.000001)
     i, j = int(y), int(x)
     v, u = y - i, x - j

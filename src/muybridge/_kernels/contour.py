@@ -11,6 +11,9 @@ joint.
 
 The other way round, every border point of the mask that no segment covers is matched to the segment whose outline is
 nearest, with limbs preferred to the trunk: an arm that comes out from before the trunk is seen by nothing else.
+
+Every residual is a row of numbers, filled in three steps: a place on the outline, what the mask says there, and how
+fast it moves.
 """
 
 from __future__ import annotations
@@ -20,215 +23,32 @@ import math
 import numpy as np
 
 from muybridge._kernels._jit import kernel
+from muybridge._kernels.border import border_alignment, border_distance
 from muybridge._kernels.chain import dof_screws
 from muybridge._kernels.outline import END, KIND, OUTLINE_COLUMNS, SIDE, outlines_of, project, row_span, support
 
-#: Columns of a row's facts: camera, segment, distance d, metres per pixel at the point, normal x, y, pixel x, y, place
-#: along the segment (0 base, 1 tip), pixels per log width, pixels per log depth, alignment of border and normal.
-CAMERA, SEGMENT, DISTANCE, METRES, NORMAL, PIXEL, ALONG, WIDTH, DEPTH, ALIGNMENT = 0, 1, 2, 3, 4, 6, 8, 9, 10, 11
-ROW_COLUMNS = 12
+#: Columns of a row: camera, segment, distance d, metres per pixel at the point, normal x, y, pixel x, y, place along
+#: the segment (0 base, 1 tip), pixels per log width, pixels per log depth, alignment of border and normal, and the
+#: point P, world, metres.
+CAMERA, SEGMENT, DISTANCE, METRES, NORMAL, PIXEL, ALONG, WIDTH, DEPTH, ALIGNMENT, POINT = (
+    0,
+    1,
+    2,
+    3,
+    4,
+    6,
+    8,
+    9,
+    10,
+    11,
+    12,
+)
+ROW_COLUMNS = 15
 NEIGHBOUR = 1.5  # pixels outwards; a point whose neighbour there lies in another segment is no border
-STEP = 0.5  # pixels between looks at the mask
 UNCOVERED = 1.5  # pixels outside every segment from which a border point of the mask counts as unexplained
+LARGEST_END = 60.0  # pixels; no end reaches further from its middle
 CAP_ANGLES = (-1.05, -0.52, 0.0, 0.52, 1.05)  # radians round the axis direction
-
-
-@kernel
-def look(mask, x, y):
-    """Bilinear value of a mask in [0, 1] at a pixel; 0 outside the picture."""
-    height, width = mask.shape
-    x0, y0 = math.floor(x), math.floor(y)
-    fx, fy = x - x0, y - y0
-    i, j = int(y0), int(x0)
-    value = 0.0
-    for a in range(2):
-        for b in range(2):
-            if 0 <= i + a < height and 0 <= j + b < width:
-                value += mask[i + a, j + b] * (fy if a else 1.0 - fy) * (fx if b else 1.0 - fx)
-    return value
-
-
-@kernel
-def border_distance(mask, x, y, nx, ny, reach):
-    """Signed distance along (nx, ny) to where the mask next falls through one half; `inf` if that is out of reach."""
-    here = look(mask, x, y)
-    sense = 1.0 if here >= 0.5 else -1.0
-    before, travelled = here, 0.0
-    while travelled < reach:
-        travelled += STEP
-        value = look(mask, x + sense * travelled * nx, y + sense * travelled * ny)
-        if (value < 0.5) == (sense > 0.0):
-            part = (before - 0.5) / (before - value)
-            return sense * (travelled - STEP + part * STEP)
-        before = value
-    return np.inf
-
-
-@kernel
-def border_alignment(mask, x, y, nx, ny):
-    """Cosine between the outward normal and the direction in which the mask falls at (x, y), not below 0."""
-    gx = look(mask, x - 1.0, y) - look(mask, x + 1.0, y)
-    gy = look(mask, x, y - 1.0) - look(mask, x, y + 1.0)
-    length = math.sqrt(gx * gx + gy * gy)
-    return max(0.0, (gx * nx + gy * ny) / length) if length > 1e-6 else 0.0
-
-
-@kernel
-def inside_another(outlines, own, x, y):
-    """Whether a pixel lies within the outline of any segment but `own`."""
-    for k in range(outlines.shape[0]):
-        if k != own and outlines[k, KIND] > 0.0:
-            left, right = row_span(outlines[k], y)
-            if left <= x <= right:
-                return True
-    return False
-
-
-@kernel
-def surface_point(camera, frame, end, half_axes, nx, ny, point):
-    """Fill `point` (3,), world: the point of an end whose image is farthest along (nx, ny).
-
-    Returns how far, in pixels, the outline moves there per log width and per log depth of the end.
-    """
-    c = np.empty(3)
-    for i in range(3):
-        c[i] = frame[i, 0] * end[0] + frame[i, 1] * end[1] + frame[i, 2] * end[2] + frame[i, 3]
-        point[i] = c[i]
-    x = camera[11] * c[0] + camera[12] * c[1] + camera[13] * c[2] + camera[20]
-    y = camera[14] * c[0] + camera[15] * c[1] + camera[16] * c[2] + camera[21]
-    z = camera[17] * c[0] + camera[18] * c[1] + camera[19] * c[2] + camera[22]
-    _, _, ux, uy, uz, vx, vy, vz = project(camera, x, y, z)
-    g = np.empty(3)
-    for i in range(3):
-        g[i] = (
-            (nx * ux + ny * vx) * camera[11 + i]
-            + (nx * uy + ny * vy) * camera[14 + i]
-            + (nx * uz + ny * vz) * camera[17 + i]
-        )
-    total = 1e-12
-    share = np.zeros(3)
-    for j in range(3):
-        for i in range(3):
-            share[j] += g[i] * (
-                frame[i, 0] * half_axes[j, 0] + frame[i, 1] * half_axes[j, 1] + frame[i, 2] * half_axes[j, 2]
-            )
-        total += share[j] * share[j]
-    length = math.sqrt(total)
-    for j in range(3):
-        for i in range(3):
-            axis_i = frame[i, 0] * half_axes[j, 0] + frame[i, 1] * half_axes[j, 1] + frame[i, 2] * half_axes[j, 2]
-            point[i] += share[j] / length * axis_i
-    along = 0.5 * share[2] * share[2]
-    return (share[0] * share[0] + along) / length, (share[1] * share[1] + along) / length
-
-
-@kernel
-def add_row(
-    camera,
-    c,
-    k,
-    s,
-    affects,
-    axes,
-    anchors,
-    point,
-    nx,
-    ny,
-    x,
-    y,
-    along,
-    width,
-    depth,
-    outlines,
-    mask,
-    reach,
-    rows,
-    slopes,
-    count,
-):
-    """Append the residual at one outline point unless another segment hides it or no border is near; the new count."""
-    if count >= rows.shape[0] or inside_another(outlines, k, x + NEIGHBOUR * nx, y + NEIGHBOUR * ny):
-        return count
-    if not (0.0 <= x <= camera[23] - 1.0 and 0.0 <= y <= camera[24] - 1.0):
-        return count
-    distance = border_distance(mask, x, y, nx, ny, reach)
-    if not math.isfinite(distance):
-        return count
-    alignment = border_alignment(mask, x + distance * nx, y + distance * ny, nx, ny)
-    return write_row(
-        camera,
-        c,
-        s,
-        affects,
-        axes,
-        anchors,
-        point,
-        nx,
-        ny,
-        x,
-        y,
-        along,
-        width,
-        depth,
-        distance,
-        alignment,
-        rows,
-        slopes,
-        count,
-    )
-
-
-@kernel
-def write_row(
-    camera,
-    c,
-    s,
-    affects,
-    axes,
-    anchors,
-    point,
-    nx,
-    ny,
-    x,
-    y,
-    along,
-    width,
-    depth,
-    distance,
-    alignment,
-    rows,
-    slopes,
-    count,
-):
-    """Write a residual and its derivative by every degree of freedom; the new count."""
-    px = camera[11] * point[0] + camera[12] * point[1] + camera[13] * point[2] + camera[20]
-    py = camera[14] * point[0] + camera[15] * point[1] + camera[16] * point[2] + camera[21]
-    pz = camera[17] * point[0] + camera[18] * point[1] + camera[19] * point[2] + camera[22]
-    if not pz > 0.0:
-        return count
-    _, _, ux, uy, uz, vx, vy, vz = project(camera, px, py, pz)
-    gx = nx * ux + ny * vx
-    gy = nx * uy + ny * vy
-    gz = nx * uz + ny * vz
-    g0 = gx * camera[11] + gy * camera[14] + gz * camera[17]
-    g1 = gx * camera[12] + gy * camera[15] + gz * camera[18]
-    g2 = gx * camera[13] + gy * camera[16] + gz * camera[19]
-    slopes[count, 0], slopes[count, 1], slopes[count, 2] = g0, g1, g2
-    for d in range(3, axes.shape[0]):
-        slopes[count, d] = 0.0
-        if affects[s, d]:
-            r0, r1, r2 = point[0] - anchors[d, 0], point[1] - anchors[d, 1], point[2] - anchors[d, 2]
-            slopes[count, d] = (
-                g0 * (axes[d, 1] * r2 - axes[d, 2] * r1)
-                + g1 * (axes[d, 2] * r0 - axes[d, 0] * r2)
-                + g2 * (axes[d, 0] * r1 - axes[d, 1] * r0)
-            )
-    rows[count, CAMERA], rows[count, SEGMENT], rows[count, DISTANCE] = c, s, distance
-    rows[count, METRES] = 1.0 / max(1e-9, math.sqrt(g0 * g0 + g1 * g1 + g2 * g2))
-    rows[count, NORMAL], rows[count, NORMAL + 1], rows[count, PIXEL], rows[count, PIXEL + 1] = nx, ny, x, y
-    rows[count, ALONG], rows[count, WIDTH], rows[count, DEPTH] = along, width, depth
-    rows[count, ALIGNMENT] = alignment
-    return count + 1
+TURNS = 12  # points round a segment that is seen as one ellipse
 
 
 @kernel
@@ -242,6 +62,7 @@ def contour_rows(
     ends,
     half_axes,
     affects,
+    wanted,
     cameras,
     masks,
     borders,
@@ -254,231 +75,248 @@ def contour_rows(
 ):
     """Residuals of one pose (D,) in all cameras.
 
-    masks (C, H, W) float32 in [0, 1]; borders (C, B, 2) pixels, of which border_counts (C,) are used; stiffness (S,),
-    by which a segment's distance to a border point is multiplied before the nearest is chosen; reaches (C,) pixels;
-    affects (S, D) bool: whether a joint moves a segment. Fills rows (R, ROW_COLUMNS) and slopes (R, D), pixels per
-    metre and per radian; returns how many.
+    wanted (S,) bool: the segments whose outline is looked at; masks (C, H, W) uint8, 0 to FULL; borders (C, B, 2)
+    pixels, of which border_counts (C,) are used; stiffness (S,), by which a segment's distance to a border point is
+    multiplied before the nearest is chosen; reaches (C,) pixels; affects (S, D) bool: whether a joint moves a segment.
+    Fills rows (R, ROW_COLUMNS) and slopes (R, D), pixels per metre and per radian; returns how many.
     """
     count = 0
     frames = np.empty((parent.shape[0], 3, 4))
     axes, anchors = np.zeros((pose.shape[0], 3)), np.zeros((pose.shape[0], 3))
     dof_screws(pose, parent, fixed, axis, dof, frames, axes, anchors)
-    outlines = np.empty((shaped.shape[0], OUTLINE_COLUMNS))
-    first, second, point = np.empty(3), np.empty(3), np.empty(3)
+    outlines, boxes = np.empty((shaped.shape[0], OUTLINE_COLUMNS)), np.empty((shaped.shape[0], 4))
     for c in range(cameras.shape[0]):
         outlines_of(cameras[c], frames, shaped, ends, half_axes, outlines)
+        boxes_of(outlines, boxes)
         for k in range(shaped.shape[0]):
-            out, s = outlines[k], shaped[k]
-            if out[KIND] == 0.0:
+            s = shaped[k]
+            if not wanted[s] or outlines[k, KIND] == 0.0:
                 continue
-            if out[KIND] == 2.0:
-                for side in range(2):
-                    base = SIDE + 6 * side
-                    nx, ny = out[base], out[base + 1]
-                    w1, d1 = surface_point(cameras[c], frames[s], ends[s, 0], half_axes[s, 0], nx, ny, first)
-                    w2, d2 = surface_point(cameras[c], frames[s], ends[s, 1], half_axes[s, 1], nx, ny, second)
-                    for i in range(side_points):
-                        t = (i + 0.5) / side_points
-                        x = out[base + 2] + t * (out[base + 4] - out[base + 2])
-                        y = out[base + 3] + t * (out[base + 5] - out[base + 3])
-                        for j in range(3):
-                            point[j] = first[j] + t * (second[j] - first[j])
-                        count = add_row(
-                            cameras[c],
-                            c,
-                            k,
-                            s,
-                            affects,
-                            axes,
-                            anchors,
-                            point,
-                            nx,
-                            ny,
-                            x,
-                            y,
-                            t,
-                            w1 + t * (w2 - w1),
-                            d1 + t * (d2 - d1),
-                            outlines,
-                            masks[c],
-                            reaches[c],
-                            rows,
-                            slopes,
-                            count,
-                        )
-            count = _caps(
-                cameras[c],
-                c,
-                k,
-                s,
-                frames[s],
-                ends[s],
-                half_axes[s],
-                affects,
-                axes,
-                anchors,
-                outlines,
-                masks[c],
-                reaches[c],
-                point,
-                rows,
-                slopes,
-                count,
-            )
+            for i in range(points_of(outlines[k], side_points)):
+                row = rows[count]
+                row[CAMERA], row[SEGMENT] = c, s
+                if (
+                    place_point(outlines[k], i, side_points, row)
+                    and seen_as_border(outlines, boxes, k, cameras[c], row)
+                    and meet_border(masks[c], reaches[c], row)
+                ):
+                    surface_point(cameras[c], frames[s], ends[s], half_axes[s], row)
+                    count += 1
         for b in range(border_counts[c]):
-            count = _uncovered(
-                cameras[c],
-                c,
-                borders[c, b, 0],
-                borders[c, b, 1],
-                frames,
-                shaped,
-                ends,
-                half_axes,
-                affects,
-                axes,
-                anchors,
-                outlines,
-                stiffness,
-                reaches[c],
-                first,
-                second,
-                point,
-                rows,
-                slopes,
-                count,
-            )
-    return count
+            row = rows[count]
+            k = nearest_uncovering(outlines, shaped, stiffness, borders[c, b, 0], borders[c, b, 1], row)
+            if k >= 0 and wanted[shaped[k]] and UNCOVERED <= row[DISTANCE] <= reaches[c]:
+                s = shaped[k]
+                row[CAMERA], row[SEGMENT], row[ALIGNMENT] = c, s, 1.0
+                surface_point(cameras[c], frames[s], ends[s], half_axes[s], row)
+                count += 1
+    return differentiate(rows, slopes, count, cameras, affects, axes, anchors)
 
 
 @kernel
-def _uncovered(
-    camera,
-    c,
-    x,
-    y,
-    frames,
-    shaped,
-    ends,
-    half_axes,
-    affects,
-    axes,
-    anchors,
-    outlines,
-    stiffness,
-    reach,
-    first,
-    second,
-    point,
-    rows,
-    slopes,
-    count,
-):
-    """Residual of one border point of the mask that lies outside every segment; the new count."""
-    best, nearest, gap, place, nx, ny = np.inf, -1, 0.0, 0.0, 0.0, 0.0
-    for k in range(shaped.shape[0]):
-        out = outlines[k]
-        if out[KIND] == 0.0:
-            continue
-        dx, dy = out[END + 6] - out[END], out[END + 7] - out[END + 1]
-        square = dx * dx + dy * dy
-        t = 0.0
-        if out[KIND] == 2.0 and square > 1e-9:
-            t = min(1.0, max(0.0, ((x - out[END]) * dx + (y - out[END + 1]) * dy) / square))
-        elif out[END + 8] + out[END + 10] > out[END + 2] + out[END + 4]:
-            t = 1.0
-        vx, vy = x - out[END] - t * dx, y - out[END + 1] - t * dy
-        length = math.sqrt(vx * vx + vy * vy)
-        if length * stiffness[shaped[k]] > best + 60.0 * stiffness[shaped[k]] or length < 1e-9:
-            continue
-        vx, vy = vx / length, vy / length
-        away = length - (1.0 - t) * support(out, END, vx, vy) - t * support(out, END + 6, vx, vy)
-        if away <= 0.0:
-            return count  # covered
-        if away * stiffness[shaped[k]] < best:
-            best, nearest, gap, place, nx, ny = away * stiffness[shaped[k]], k, away, t, vx, vy
-    if nearest < 0 or gap < UNCOVERED or gap > reach or count >= rows.shape[0]:
-        return count
-    s = shaped[nearest]
-    w1, d1 = surface_point(camera, frames[s], ends[s, 0], half_axes[s, 0], nx, ny, first)
-    w2, d2 = surface_point(camera, frames[s], ends[s, 1], half_axes[s, 1], nx, ny, second)
+def points_of(out, side_points):
+    """How many points of an outline are looked at: along two sides and round two caps, or round one ellipse."""
+    return 2 * (side_points + len(CAP_ANGLES)) if out[KIND] == 2.0 else TURNS
+
+
+@kernel
+def place_point(out, i, side_points, row):
+    """Fill a row's place with the i-th point of an outline; False where there is none."""
+    if out[KIND] == 2.0 and i < 2 * side_points:
+        base = SIDE + 6 * (i // side_points)
+        t = (i % side_points + 0.5) / side_points
+        row[NORMAL], row[NORMAL + 1], row[ALONG] = out[base], out[base + 1], t
+        row[PIXEL] = out[base + 2] + t * (out[base + 4] - out[base + 2])
+        row[PIXEL + 1] = out[base + 3] + t * (out[base + 5] - out[base + 3])
+    else:
+        e = larger_end(out)
+        angle = 2.0 * math.pi * i / TURNS
+        nx, ny = math.cos(angle), math.sin(angle)
+        if out[KIND] == 2.0:
+            i -= 2 * side_points
+            e = i // len(CAP_ANGLES)
+            dx, dy = out[END + 6] - out[END], out[END + 7] - out[END + 1]
+            length = math.sqrt(dx * dx + dy * dy)
+            if length < 1e-9:
+                return False
+            sign = (2.0 * e - 1.0) / length  # away from the segment's middle
+            cosine, sine = math.cos(CAP_ANGLES[i % len(CAP_ANGLES)]), math.sin(CAP_ANGLES[i % len(CAP_ANGLES)])
+            nx, ny = sign * (dx * cosine - dy * sine), sign * (dx * sine + dy * cosine)
+        base = END + 6 * e
+        h = support(out, base, nx, ny)
+        row[NORMAL], row[NORMAL + 1], row[ALONG] = nx, ny, e
+        row[PIXEL] = out[base] + (out[base + 2] * nx + out[base + 3] * ny) / h
+        row[PIXEL + 1] = out[base + 1] + (out[base + 3] * nx + out[base + 4] * ny) / h
+    return True
+
+
+@kernel
+def larger_end(out):
+    """0 or 1: which end's ellipse is the larger, and covers the other where an outline has no sides."""
+    return 1 if out[END + 8] + out[END + 10] > out[END + 2] + out[END + 4] else 0
+
+
+@kernel
+def surface_point(camera, frame, ends, half_axes, row):
+    """Fill a row's P, world: the surface point whose image is farthest along the normal, `ALONG` from base to tip.
+
+    And its widths: how far, in pixels, the outline moves there per log width and per log depth.
+    """
+    row[WIDTH] = row[DEPTH] = row[POINT] = row[POINT + 1] = row[POINT + 2] = 0.0
+    for e in range(2):
+        part = row[ALONG] if e == 1 else 1.0 - row[ALONG]
+        if part > 0.0:
+            _add_end(camera, frame, ends[e], half_axes[e], part, row)
+
+
+@kernel
+def _add_end(camera, frame, end, half_axes, part, row):
+    """Add `part` of the extreme point of one end to a row's P and widths."""
+    cx, cy, cz = turned(frame, end)
+    cx, cy, cz = cx + frame[0, 3], cy + frame[1, 3], cz + frame[2, 3]
+    gx, gy, gz, _ = pixel_gradient(camera, cx, cy, cz, row[NORMAL], row[NORMAL + 1])
+    total, wide, deep, along = 1e-12, 0.0, 0.0, 0.0
+    px, py, pz = 0.0, 0.0, 0.0
     for j in range(3):
-        point[j] = first[j] + place * (second[j] - first[j])
-    return write_row(
-        camera,
-        c,
-        s,
-        affects,
-        axes,
-        anchors,
-        point,
-        nx,
-        ny,
-        x - gap * nx,
-        y - gap * ny,
-        place,
-        w1 + place * (w2 - w1),
-        d1 + place * (d2 - d1),
-        gap,
-        1.0,
-        rows,
-        slopes,
-        count,
+        ax, ay, az = turned(frame, half_axes[j])
+        reach = gx * ax + gy * ay + gz * az
+        px, py, pz = px + reach * ax, py + reach * ay, pz + reach * az
+        total += reach * reach
+        if j == 0:
+            wide = reach * reach
+        elif j == 1:
+            deep = reach * reach
+        else:
+            along = 0.5 * reach * reach
+    length = math.sqrt(total)
+    row[POINT] += part * (cx + px / length)
+    row[POINT + 1] += part * (cy + py / length)
+    row[POINT + 2] += part * (cz + pz / length)
+    row[WIDTH] += part * (wide + along) / length
+    row[DEPTH] += part * (deep + along) / length
+
+
+@kernel
+def turned(frame, v):
+    """A segment's vector (3,) in the world: x, y, z."""
+    return (
+        frame[0, 0] * v[0] + frame[0, 1] * v[1] + frame[0, 2] * v[2],
+        frame[1, 0] * v[0] + frame[1, 1] * v[1] + frame[1, 2] * v[2],
+        frame[2, 0] * v[0] + frame[2, 1] * v[1] + frame[2, 2] * v[2],
     )
 
 
 @kernel
-def _caps(
-    camera, c, k, s, frame, ends, half_axes, affects, axes, anchors, outlines, mask, reach, point, rows, slopes, count
-):
-    """Residuals round both ends of one segment, in the directions that lead away from its middle."""
-    out = outlines[k]
-    dx, dy = out[END + 6] - out[END], out[END + 7] - out[END + 1]
-    length = math.sqrt(dx * dx + dy * dy)
-    full_circle = out[KIND] == 1.0
-    for e in range(2):
-        if (
-            full_circle
-            and out[END + 6 * e + 2] + out[END + 6 * e + 4]
-            < out[END + 6 * (1 - e) + 2] + out[END + 6 * (1 - e) + 4] + e
-        ):
-            continue  # the smaller of two ends, one of which covers the other
-        turns = 12 if full_circle else len(CAP_ANGLES)
-        for i in range(turns):
-            if full_circle or length < 1e-9:
-                angle = i * math.pi / 6.0
-                nx, ny = math.cos(angle), math.sin(angle)
-            else:
-                sign = 1.0 if e == 1 else -1.0
-                cosine, sine = math.cos(CAP_ANGLES[i]), math.sin(CAP_ANGLES[i])
-                nx = sign * (dx * cosine - dy * sine) / length
-                ny = sign * (dx * sine + dy * cosine) / length
+def pixel_gradient(camera, x, y, z, nx, ny):
+    """Pixels along (nx, ny) per metre that a world point moves in x, y, z; and its depth."""
+    a = camera[11] * x + camera[12] * y + camera[13] * z + camera[20]
+    b = camera[14] * x + camera[15] * y + camera[16] * z + camera[21]
+    depth = camera[17] * x + camera[18] * y + camera[19] * z + camera[22]
+    _, _, ux, uy, uz, vx, vy, vz = project(camera, a, b, depth)
+    ga, gb, gc = nx * ux + ny * vx, nx * uy + ny * vy, nx * uz + ny * vz
+    return (
+        ga * camera[11] + gb * camera[14] + gc * camera[17],
+        ga * camera[12] + gb * camera[15] + gc * camera[18],
+        ga * camera[13] + gb * camera[16] + gc * camera[19],
+        depth,
+    )
+
+
+@kernel
+def boxes_of(outlines, boxes):
+    """Fill boxes (K, 4) with left, top, right, bottom of outlines (K, OUTLINE_COLUMNS), pixels; empty where unseen."""
+    for k in range(outlines.shape[0]):
+        out, box = outlines[k], boxes[k]
+        box[0] = box[1] = np.inf
+        box[2] = box[3] = -np.inf
+        for e in range(2 if out[KIND] > 0.0 else 0):
             base = END + 6 * e
-            h = support(out, base, nx, ny)
-            x = out[base] + (out[base + 2] * nx + out[base + 3] * ny) / h
-            y = out[base + 1] + (out[base + 3] * nx + out[base + 4] * ny) / h
-            width, depth = surface_point(camera, frame, ends[e], half_axes[e], nx, ny, point)
-            count = add_row(
-                camera,
-                c,
-                k,
-                s,
-                affects,
-                axes,
-                anchors,
-                point,
-                nx,
-                ny,
-                x,
-                y,
-                float(e),
-                width,
-                depth,
-                outlines,
-                mask,
-                reach,
-                rows,
-                slopes,
-                count,
-            )
-    return count
+            wide, high = math.sqrt(out[base + 2]), math.sqrt(out[base + 4])
+            box[0], box[1] = min(box[0], out[base] - wide), min(box[1], out[base + 1] - high)
+            box[2], box[3] = max(box[2], out[base] + wide), max(box[3], out[base + 1] + high)
+
+
+@kernel
+def seen_as_border(outlines, boxes, own, camera, row):
+    """Whether a point of outline `own` lies in the picture and just outside it lies no other segment."""
+    x, y = row[PIXEL], row[PIXEL + 1]
+    if not (0.0 <= x <= camera[23] - 1.0 and 0.0 <= y <= camera[24] - 1.0):
+        return False
+    x, y = x + NEIGHBOUR * row[NORMAL], y + NEIGHBOUR * row[NORMAL + 1]
+    for k in range(outlines.shape[0]):
+        if k != own and boxes[k, 0] <= x <= boxes[k, 2] and boxes[k, 1] <= y <= boxes[k, 3]:
+            left, right = row_span(outlines[k], y)
+            if left <= x <= right:
+                return False
+    return True
+
+
+@kernel
+def meet_border(mask, reach, row):
+    """Fill a row's distance to the mask's border and how well the two are aligned; False where it is out of reach."""
+    x, y, nx, ny = row[PIXEL], row[PIXEL + 1], row[NORMAL], row[NORMAL + 1]
+    distance = border_distance(mask, x, y, nx, ny, reach)
+    if not math.isfinite(distance):
+        return False
+    row[DISTANCE] = distance
+    row[ALIGNMENT] = border_alignment(mask, x + distance * nx, y + distance * ny, nx, ny)
+    return True
+
+
+@kernel
+def nearest_uncovering(outlines, shaped, stiffness, x, y, row):
+    """The outline that a border point of the mask should be reached by, and the row's place on it.
+
+    -1 where a segment covers the point already.
+    """
+    best, nearest = np.inf, -1
+    for k in range(shaped.shape[0]):
+        out, stiff = outlines[k], stiffness[shaped[k]]
+        if out[KIND] == 0.0:
+            continue
+        dx, dy = out[END + 6] - out[END], out[END + 7] - out[END + 1]
+        square = dx * dx + dy * dy
+        t = float(larger_end(out))
+        if out[KIND] == 2.0 and square > 1e-9:
+            t = min(1.0, max(0.0, ((x - out[END]) * dx + (y - out[END + 1]) * dy) / square))
+        vx, vy = x - out[END] - t * dx, y - out[END + 1] - t * dy
+        length = math.sqrt(vx * vx + vy * vy)
+        if (length - LARGEST_END) * stiff > best or length < 1e-9:
+            continue
+        vx, vy = vx / length, vy / length
+        away = length - (1.0 - t) * support(out, END, vx, vy) - t * support(out, END + 6, vx, vy)
+        if away <= 0.0:
+            return -1
+        if away * stiff < best:
+            best, nearest = away * stiff, k
+            row[DISTANCE], row[ALONG], row[NORMAL], row[NORMAL + 1] = away, t, vx, vy
+            row[PIXEL], row[PIXEL + 1] = x - away * vx, y - away * vy
+    return nearest
+
+
+@kernel
+def differentiate(rows, slopes, count, cameras, affects, axes, anchors):
+    """Fill the derivatives of `count` rows by every degree of freedom; returns how many lie before their camera."""
+    kept = 0
+    for i in range(count):
+        row = rows[i]
+        x, y, z = row[POINT], row[POINT + 1], row[POINT + 2]
+        gx, gy, gz, depth = pixel_gradient(cameras[int(row[CAMERA])], x, y, z, row[NORMAL], row[NORMAL + 1])
+        if not depth > 0.0:
+            continue
+        row[METRES] = 1.0 / max(1e-9, math.sqrt(gx * gx + gy * gy + gz * gz))
+        if kept < i:
+            rows[kept] = row
+        slope, s = slopes[kept], int(row[SEGMENT])
+        slope[0], slope[1], slope[2] = gx, gy, gz
+        for d in range(3, axes.shape[0]):
+            slope[d] = 0.0
+            if affects[s, d]:
+                rx, ry, rz = x - anchors[d, 0], y - anchors[d, 1], z - anchors[d, 2]
+                slope[d] = (
+                    gx * (axes[d, 1] * rz - axes[d, 2] * ry)
+                    + gy * (axes[d, 2] * rx - axes[d, 0] * rz)
+                    + gz * (axes[d, 0] * ry - axes[d, 1] * rx)
+                )
+        kept += 1
+    return kept

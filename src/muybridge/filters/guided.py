@@ -25,20 +25,24 @@ covariance, the next frame's P, is (H_L / (kappa v) + Lambda)^-1: v is the resid
 assumed, found in each frame, and kappa the number of neighbouring residuals that err together.
 
 A climb finds the nearest mode, and a limb that left the picture's outline (an arm that crossed the trunk) may be found
-by no climb again. So in every frame one block of components, a limb, is also drawn anew all over its range; the draws
-that the likelihood likes best are climbed from, and taken if the climb ends with clearly less misfit. How much less is
-a share of the misfit there is: where masks are bad, chance differences are larger too.
+by no climb again. So in every frame each block of components, a limb, is also drawn anew all over its range. From the
+draws that the likelihood likes best that limb climbs alone, which is quick; where it ends better than it was, the whole
+pose climbs once more from the prediction with that limb put there and set free of its past, (P + Q) being cut and
+widened at its components. That pose is taken if it has clearly less misfit. How much less is a share of the misfit
+there is: where masks are bad, chance differences are larger too.
 
-Cost: `len(spreads)` looks at the contour and N likelihood evaluations a frame; with blocks, `redraws` evaluations and
-about twice the looks more.
+Cost: `len(spreads)` looks at the contour a frame; with blocks, `redraws` likelihood evaluations and about two looks at
+one limb's contour for each, and for every limb that is put elsewhere one climb more.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Literal, Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 
 from muybridge.errors import InputError
 from muybridge.filters.dynamics import Dynamics, reflect
@@ -77,8 +81,14 @@ class Linearised(Protocol):
 class GuidingLikelihood(Likelihood, Protocol):
     """A likelihood that also knows which way is up."""
 
-    def normal_equations(self, pose: FloatArray, spread: float) -> Linearised:
-        """At a pose (D,), with residuals beyond `spread` (metres) counting less and less."""
+    def normal_equations(
+        self, pose: FloatArray, spread: float, components: NDArray[np.intp] | None = None
+    ) -> Linearised:
+        """At a pose (D,), with residuals beyond `spread` (metres) counting less and less.
+
+        components : (B,) int, optional
+            Those that may move, the others standing; D is then B.
+        """
         ...
 
 
@@ -92,11 +102,12 @@ class Config(CommonConfig):
     estimate: Literal["mean", "maximum"] = "mean"
     spreads: tuple[float, ...] = (0.2, 0.13, 0.085, 0.06, 0.045, 0.035, 0.03, 0.025)  # metres, one a step, falling
     dependence: float = 45.0  # kappa; 95 % regions then hold 81 to 91 % on demo scenes, see docs/benchmarks.md
-    blocks: tuple[tuple[int, ...], ...] = ()  # components that are drawn anew together, a block a frame; empty: never
-    redraws: int = 200  # likelihood evaluations spent on that
-    tries: int = 4  # of the best redraws, so many are climbed from
+    blocks: tuple[tuple[int, ...], ...] = ()  # components that are drawn anew together; empty: never
+    redraws: int = 100  # likelihood evaluations spent on each
+    tries: int = 4  # of a block's best redraws, so many are climbed from
     hopeful: float = 4.0  # log likelihood that a redraw may lack and still be climbed from
     improvement: float = 0.02  # share of the negative log likelihood, by which a climbed redraw must be better
+    freedom: float = 0.5  # radians (metres); one standard deviation of a redrawn limb about where it climbed to
     weighting: Literal["laplace", "likelihood", "importance"] = "laplace"  # equal | p(y|x) | p(y|x) p(x) / proposal
 
     def __post_init__(self) -> None:
@@ -104,6 +115,9 @@ class Config(CommonConfig):
         falling = all(s > 0 for s in self.spreads) and list(self.spreads) == sorted(self.spreads, reverse=True)
         require("spreads", len(self.spreads) > 0 and falling, "positive metres, falling", self.spreads)
         require("improvement", self.improvement >= 0, "0 or more", self.improvement)
+        require("freedom", self.freedom > 0, "above 0", self.freedom)
+        require("redraws", self.redraws >= 0, "0 or more", self.redraws)
+        require("tries", self.tries >= 1, "1 or more", self.tries)
         require("dependence", self.dependence > 0, "above 0", self.dependence)
         require(
             "weighting",
@@ -145,88 +159,125 @@ def step(
         raise InputError("guided filter", expected="a likelihood with normal_equations", got=type(likelihood).__name__)
     counted = CountingLikelihood(likelihood)
     prediction = dynamics.sample(rng, state.estimate[None], state.velocity, 0.0)[0]
-    prior = _prior_precision(state.covariance, dynamics)
-    mode, seen = climb(prediction, prior, likelihood, dynamics, config)
-    start, mode, seen = _redraw_limb(rng, prediction, mode, seen, prior, counted, likelihood, dynamics, config)
-    precision = seen.curvature / (config.dependence * seen.noise) + prior
-    covariance = np.linalg.inv(precision).astype(np.float64)
+    moved = state.covariance + np.diag(np.maximum(dynamics.noise_sd, 1e-9) ** 2)
+    prior = _Prior(prediction, moved, dynamics)
+    peak = _climb_all(prior, counted, likelihood, config.spreads)
+    for block in config.blocks if config.redraws else ():
+        peak = _redraw(rng, np.array(block), peak, prior, counted, likelihood, config)
+    mode = peak.pose
+    precision = peak.seen.curvature / (config.dependence * peak.seen.noise) + peak.prior.precision
     standard = rng.standard_normal((config.particles, mode.size))
     standard[0] = 0.0  # the mode itself is always among them
     deviations = np.linalg.solve(np.linalg.cholesky(precision).T, standard.T).T
     particles = reflect(mode + deviations, dynamics.lower, dynamics.upper)
     log_likelihoods = counted.log_prob(particles)
-    log_weights = _log_weights(particles, log_likelihoods, standard, prior, prediction, config)
+    log_weights = _log_weights(particles, log_likelihoods, standard, peak.prior, config)
     layers = Layers()
     layers.append(Weights(log_weights).survival_rate, config.sharpness)
     population = Population(particles, log_likelihoods)
     following, info = conclude(state, particles, population, log_weights, counted, config, layers)
-    if config.weighting == "laplace" and not info.collapsed:  # equal weights: their mean is the mode plus noise
+    if info.collapsed:
+        return following, info
+    if config.weighting == "laplace":  # the particles' mean is the mode plus noise
         following = replace(following, estimate=mode)
     # A redrawn limb did not travel: what it jumped is no velocity.
-    velocity = following.estimate - state.estimate - (start - prediction)
-    following = following if info.collapsed else replace(following, velocity=velocity)
-    return following if info.collapsed else replace(following, covariance=covariance), info
+    velocity = following.estimate - state.estimate - (peak.prior.mean - prediction)
+    return replace(following, velocity=velocity, covariance=np.linalg.inv(precision).astype(np.float64)), info
+
+
+class _Prior:
+    """What is known before the picture: mean (D,) and precision (D, D), no less than what the limits know."""
+
+    def __init__(self, mean: FloatArray, covariance: FloatArray, dynamics: Dynamics) -> None:
+        self.mean, self.covariance, self.dynamics = mean, covariance, dynamics
+        span = dynamics.upper - dynamics.lower
+        known = np.where(np.isfinite(span), 12.0 / np.maximum(span, 1e-6) ** 2, 1e-9)  # of a uniform density
+        self.precision: FloatArray = np.linalg.inv(covariance) + np.diag(known)
+
+    def freed(self, block: NDArray[np.intp], values: FloatArray, sd: float) -> _Prior:
+        """The same with one block's components (B,) about `values`, whatever they were before."""
+        mean, covariance = self.mean.copy(), self.covariance.copy()
+        mean[block] = values
+        covariance[block, :] = covariance[:, block] = 0.0
+        covariance[block, block] = sd**2
+        return _Prior(mean, covariance, self.dynamics)
+
+
+@dataclass(frozen=True, eq=False)
+class _Peak:
+    """Where a climb ended: pose (D,), its log likelihood, the curvature there, and the prior it climbed under."""
+
+    pose: FloatArray
+    log_likelihood: float
+    seen: Linearised
+    prior: _Prior
 
 
 def climb(
-    prediction: FloatArray, prior: FloatArray, likelihood: GuidingLikelihood, dynamics: Dynamics, config: Config
+    start: FloatArray,
+    precision: FloatArray,
+    likelihood: GuidingLikelihood,
+    dynamics: Dynamics,
+    spreads: Sequence[float],
+    components: NDArray[np.intp] | None = None,
 ) -> tuple[FloatArray, Linearised]:
-    """The posterior's mode near the prediction (D,) of precision `prior` (D, D), and the curvature there."""
-    mode = prediction
-    for spread in config.spreads:
-        seen = likelihood.normal_equations(mode, spread)
-        change = np.linalg.solve(seen.curvature + prior, seen.gradient + prior @ (prediction - mode))
+    """The posterior's mode (D,) near a pose (D,) of prior precision (D, D), and the curvature there.
+
+    components : (B,) int, optional
+        Those that may move, the others standing; the curvature is then (B, B).
+    """
+    part = np.arange(start.size) if components is None else components
+    precision = precision[np.ix_(part, part)]
+    mode = start.copy()
+    for spread in spreads:
+        seen = likelihood.normal_equations(mode, spread, components)
+        gradient = seen.gradient + precision @ (start - mode)[part]
+        change = np.linalg.solve(seen.curvature + precision, gradient)
         change *= min(1.0, LARGEST_TURN / max(1e-12, float(np.abs(change).max())))
-        mode = np.clip(mode + change, dynamics.lower, dynamics.upper)
+        mode[part] = np.clip(mode[part] + change, dynamics.lower[part], dynamics.upper[part])
     return mode, seen
 
 
-def _redraw_limb(
+def _climb_all(
+    prior: _Prior, counted: CountingLikelihood, likelihood: GuidingLikelihood, spreads: Sequence[float]
+) -> _Peak:
+    pose, seen = climb(prior.mean, prior.precision, likelihood, prior.dynamics, spreads)
+    return _Peak(pose, float(counted.log_prob(pose[None])[0]), seen, prior)
+
+
+def _redraw(
     rng: np.random.Generator,
-    prediction: FloatArray,
-    mode: FloatArray,
-    seen: Linearised,
-    prior: FloatArray,
+    block: NDArray[np.intp],
+    peak: _Peak,
+    prior: _Prior,
     counted: CountingLikelihood,
     likelihood: GuidingLikelihood,
-    dynamics: Dynamics,
     config: Config,
-) -> tuple[FloatArray, FloatArray, Linearised]:
-    """Draw one block anew; the start (D,) and the mode (D,) that explain the picture best, and the curvature there."""
-    if not config.blocks or config.redraws < 1:
-        return prediction, mode, seen
-    block = np.array(config.blocks[int(rng.integers(len(config.blocks)))])
+) -> _Peak:
+    """Draw one block anew; the peak that explains the picture best."""
+    dynamics = prior.dynamics
     low, high = np.maximum(dynamics.lower[block], -np.pi), np.minimum(dynamics.upper[block], np.pi)
-    drawn = np.repeat(mode[None], config.redraws, axis=0)
+    drawn = np.repeat(peak.pose[None], config.redraws, axis=0)
     drawn[:, block] = rng.uniform(low, high, (config.redraws, block.size))
-    here = float(counted.log_prob(mode[None])[0])
     scores = counted.log_prob(drawn)
     best = np.argsort(-scores, kind="stable")[: config.tries]
-    best = best[config.sharpness * (scores[best] - here) > -config.hopeful]
-    start = prediction
-    for candidate in drawn[best]:
-        climbed, other = climb(candidate, prior, likelihood, dynamics, config)
-        there = float(counted.log_prob(climbed[None])[0])
-        if there - here > config.improvement * abs(here):
-            start, mode, seen, here = prediction.copy(), climbed, other, there
-            start[block] = candidate[block]
-    return start, mode, seen
-
-
-def _prior_precision(covariance: FloatArray, dynamics: Dynamics) -> FloatArray:
-    """(P + Q)^-1, (D, D); no less than what the limits know."""
-    span = dynamics.upper - dynamics.lower
-    known = np.where(np.isfinite(span), 12.0 / np.maximum(span, 1e-6) ** 2, 1e-9)  # of a uniform density
-    moved = covariance + np.diag(np.maximum(dynamics.noise_sd, 1e-9) ** 2)
-    return np.linalg.inv(moved) + np.diag(known)
+    free = np.eye(peak.pose.size) / config.freedom**2
+    for start in drawn[best[config.sharpness * (scores[best] - peak.log_likelihood) > -config.hopeful]]:
+        alone, _ = climb(start, free, likelihood, dynamics, config.spreads[::2], block)
+        needed = peak.log_likelihood + config.improvement * abs(peak.log_likelihood)
+        if float(counted.log_prob(alone[None])[0]) <= needed:
+            continue
+        other = _climb_all(peak.prior.freed(block, alone[block], config.freedom), counted, likelihood, config.spreads)
+        if other.log_likelihood > needed:
+            peak = other
+    return peak
 
 
 def _log_weights(
     particles: FloatArray,
     log_likelihoods: FloatArray,
     standard: FloatArray,
-    prior: FloatArray,
-    prediction: FloatArray,
+    prior: _Prior,
     config: Config,
 ) -> FloatArray:
     """Unnormalised log weights (N,): of equal draws, by the likelihood, or by posterior over proposal."""
@@ -235,7 +286,7 @@ def _log_weights(
         return possible
     if config.weighting == "likelihood":
         return config.sharpness * log_likelihoods
-    away = particles - prediction
-    log_prior = -0.5 * np.einsum("nd,de,ne->n", away, prior, away)
+    away = particles - prior.mean
+    log_prior = -0.5 * np.einsum("nd,de,ne->n", away, prior.precision, away)
     log_proposal = -0.5 * np.sum(standard**2, axis=1)
     return config.sharpness * log_likelihoods + log_prior - log_proposal

@@ -19,6 +19,7 @@ import numpy as np
 
 from muybridge._kernels import contour as kernel
 from muybridge.body.model import Body
+from muybridge.likelihood.pictures import HALF
 
 SIDE_POINTS = 8  # along each side line of a segment
 REACH = 1.5  # the border is searched up to this many spreads away
@@ -74,10 +75,10 @@ class Borders(NamedTuple):
 
 
 def mask_borders(shares: np.ndarray, spacing: int = BORDER_SPACING) -> Borders:
-    """Every `spacing`-th pixel along the borders of masks (C, H, W) float32."""
+    """Every `spacing`-th pixel along the borders of masks (C, H, W) uint8."""
     found = []
     for share in shares:
-        contours, _ = cv2.findContours((share >= 0.5).view(np.uint8), cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
+        contours, _ = cv2.findContours((share >= HALF).view(np.uint8), cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
         kept = [line.reshape(-1, 2)[::spacing] for line in contours if len(line) >= SHORTEST_BORDER]
         found.append(np.concatenate(kept) if kept else np.zeros((0, 2), np.int32))
     points = np.zeros((len(found), max(1, *map(len, found)) if found else 1, 2))
@@ -107,20 +108,25 @@ def contour_rows(
     pose: np.ndarray,
     spread: float,
     side_points: int = SIDE_POINTS,
+    moved: np.ndarray | None = None,
 ) -> ContourRows:
     """Residuals of one pose.
 
     Parameters
     ----------
     cameras : (C, CAMERA_COLUMNS) float64, of the reduced pictures
-    shares : (C, H, W) float32, share of foreground in [0, 1]
+    shares : (C, H, W) uint8, share of foreground, 0 to `pictures.FULL`
     borders : their borders
     pose : (D,) float64, metres and radians
     spread : float, metres
         The border is searched up to 1.5 spreads away from each point.
+    moved : (B,) int, optional
+        Only the outlines that these components of the pose move.
     """
     arrays, dofs = body.arrays, len(pose)
-    capacity = len(cameras) * len(arrays.shaped) * (2 * side_points + 12) + int(borders.counts.sum())
+    wanted = np.any(body.moved_by if moved is None else body.moved_by[:, moved], axis=1)
+    points = 2 * side_points + kernel.TURNS
+    capacity = len(cameras) * int(wanted[arrays.shaped].sum()) * points + int(borders.counts.sum()) + 1
     rows, slopes = np.empty((capacity, kernel.ROW_COLUMNS)), np.empty((capacity, dofs))
     focal = np.sqrt(cameras[:, 0] * cameras[:, 1])
     root = cameras[:, 11:20].reshape(-1, 3, 3)[:, 2] @ pose[:3] + cameras[:, 22]
@@ -129,6 +135,7 @@ def contour_rows(
         np.ascontiguousarray(pose, np.float64),
         *arrays,
         body.moved_by,
+        wanted,
         cameras,
         shares,
         borders.points,

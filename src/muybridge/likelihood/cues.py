@@ -17,6 +17,7 @@ from muybridge.likelihood.boundary import BoundaryCue, descriptors_of
 from muybridge.likelihood.colour import ColourCue, ColourReference, fill_reference, measure_reference, mirrored_segments
 from muybridge.likelihood.edges import EdgeCue, edge_map, stack_maps
 from muybridge.likelihood.fusion import Cue, Fusion
+from muybridge.likelihood.pictures import HALF
 from muybridge.likelihood.silhouette import KINDS, SilhouetteCue
 
 
@@ -101,7 +102,7 @@ def colour_cue(frame: Frame, camera_weights: np.ndarray) -> ColourCue:
 
 def boundary_cue(frame: Frame, camera_weights: np.ndarray) -> BoundaryCue:
     height, width = frame.shares.shape[1:]
-    descriptors, found = descriptors_of([share >= 0.5 for share in frame.shares])
+    descriptors, found = descriptors_of([share >= HALF for share in frame.shares])
     return BoundaryCue(frame.body.arrays, frame.cameras, (width, height), descriptors, found, weights=camera_weights)
 
 
@@ -109,7 +110,7 @@ def edge_cue(frame: Frame, camera_weights: np.ndarray) -> EdgeCue:
     maps = []
     for picture, share in zip(frame.pictures, frame.shares, strict=True):
         height, width = picture.shape[:2]
-        maps.append(edge_map(picture, share[:height, :width] >= 0.5))
+        maps.append(edge_map(picture, share[:height, :width] >= HALF))
     return EdgeCue(frame.body.arrays, frame.cameras, stack_maps(maps), camera_weights)
 
 

@@ -29,7 +29,7 @@ from muybridge.likelihood.contour import (
 )
 from muybridge.likelihood.cues import CueWeights, complete_reference, fusion_of
 from muybridge.likelihood.fusion import Fusion
-from muybridge.likelihood.pictures import camera_rows, reduce_mask, stack_masks
+from muybridge.likelihood.pictures import FULL, HALF, camera_rows, reduce_mask, stack_masks
 from muybridge.segmentation import reduce_image
 
 #: No contour is believed better than this, metres, however well it fits.
@@ -118,11 +118,11 @@ class ImageLikelihood:
             raise InputError(what, expected=f"one for each of the {len(self.rig)} cameras", got=str(len(given)))
 
     def _reduced(self, c: int, mask: np.ndarray) -> np.ndarray:
-        """The share of foreground per block (H', W') float32 of camera c's mask."""
+        """The share of foreground per block (H', W') uint8 of camera c's mask."""
         small = self._small(c, mask, "mask")
         if small is None:
             return reduce_mask(mask, self.reductions[c])
-        return mask[: small[0], : small[1]].astype(np.float32)
+        return mask[: small[0], : small[1]].astype(np.uint8) * np.uint8(FULL)
 
     def _small(self, c: int, image: np.ndarray, what: str) -> tuple[int, int] | None:
         """Rows and columns to keep of an image that is reduced already; None where it is as recorded."""
@@ -141,7 +141,7 @@ class ImageLikelihood:
 class Observation:
     """Evidence of one frame.
 
-    shares : (C, H, W) float32 in [0, 1], reduced masks; bits : (C, H, words) uint64, the same thresholded at one half.
+    shares : (C, H, W) uint8, reduced masks, 0 to FULL; bits : (C, H, words) uint64, the same thresholded at one half.
     pictures : C times (H, W, 3) or (H, W) uint8, reduced; none where no cue looks at them.
     reference : what the segments look like, where colour counts.
     """
@@ -168,7 +168,7 @@ class Observation:
     @cached_property
     def areas(self) -> np.ndarray:
         """(C,) foreground pixels of the reduced masks."""
-        return np.array([int(np.count_nonzero(share >= 0.5)) for share in self.shares])
+        return np.array([int(np.count_nonzero(share >= HALF)) for share in self.shares])
 
     @cached_property
     def borders(self) -> Borders:
@@ -215,17 +215,26 @@ class Observation:
             return self.fusion.log_prob(poses)
         return -np.einsum("nc,c->n", self.costs(poses), self.model.camera_weights) / len(self.model.rig)
 
-    def contour(self, pose: np.ndarray, spread: float, side_points: int = SIDE_POINTS) -> ContourRows:
+    def contour(
+        self, pose: np.ndarray, spread: float, side_points: int = SIDE_POINTS, moved: np.ndarray | None = None
+    ) -> ContourRows:
         """Contour residuals of one pose (D,); see `likelihood.contour`."""
         borders = self.borders if spread >= UNCOVERED_SPREAD else no_borders(len(self.shares))
-        return contour_rows(self.model.body, self.model.cameras, self.shares, borders, pose, spread, side_points)
+        return contour_rows(self.model.body, self.model.cameras, self.shares, borders, pose, spread, side_points, moved)
 
-    def normal_equations(self, pose: np.ndarray, spread: float) -> NormalEquations:
-        """Curvature and gradient of the contour's log likelihood at a pose (D,), robust beyond `spread` metres."""
-        rows = self.contour(pose, spread)
+    def normal_equations(
+        self, pose: np.ndarray, spread: float, components: np.ndarray | None = None
+    ) -> NormalEquations:
+        """Curvature and gradient of the contour's log likelihood at a pose (D,), robust beyond `spread` metres.
+
+        components : (B,) int, optional
+            Only these may move: the outlines are looked at that they move, and D becomes B.
+        """
+        rows = self.contour(pose, spread, moved=components)
         weights = robust_weights(rows.distance, spread) * self.model.camera_weights[rows.camera]
         total = float(weights.sum())
         variance = float(weights @ rows.distance**2) / total if total > 0 else self.model.row_sd**2
         noise = max(variance, MINIMUM_SD**2) / self.model.row_sd**2
-        weighted = rows.slopes * (weights / self.model.row_sd**2)[:, None]
-        return NormalEquations(weighted.T @ rows.slopes, weighted.T @ rows.distance, noise, len(rows.distance))
+        slopes = rows.slopes if components is None else rows.slopes[:, components]
+        weighted = slopes * (weights / self.model.row_sd**2)[:, None]
+        return NormalEquations(weighted.T @ slopes, weighted.T @ rows.distance, noise, len(rows.distance))

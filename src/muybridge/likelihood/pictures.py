@@ -12,6 +12,10 @@ from muybridge._kernels.outline import CAMERA_COLUMNS
 from muybridge.cameras.distortion import fold_radius_squared
 from muybridge.cameras.model import Camera, Rig
 
+#: A reduced mask counts how much of a pixel is foreground, 0 to FULL; one byte a pixel, for many are kept at once.
+FULL = 255
+HALF = 128  # from here on more foreground than background
+
 #: The factor of distortion is frozen a little inside the fold, where its derivative is still positive.
 _FOLD_MARGIN = 0.98
 
@@ -29,26 +33,25 @@ def camera_rows(rig: Rig | Sequence[Camera]) -> np.ndarray:
 
 
 def reduce_mask(mask: np.ndarray, factor: int) -> np.ndarray:
-    """(H, W) bool -> (H // factor, W // factor) float32: the share of foreground in every block of `factor` x `factor`.
+    """(H, W) bool -> (H // factor, W // factor) uint8: the share of foreground in every block of `factor` x `factor`.
 
-    What is left over at the right and bottom is cut off, so that the scale is exact.
+    0 to FULL. What is left over at the right and bottom is cut off, so that the scale is exact.
     """
     height, width = (side // factor * factor for side in mask.shape)
-    whole = mask[:height, :width].astype(np.uint8) * np.uint8(255)
-    if factor > 1:
-        smaller = cv2.resize(whole, (width // factor, height // factor), interpolation=cv2.INTER_AREA)
-        return smaller.astype(np.float32) / 255.0
-    return whole.astype(np.float32) / 255.0
+    whole = mask[:height, :width].astype(np.uint8) * np.uint8(FULL)
+    if factor == 1:
+        return whole
+    return cv2.resize(whole, (width // factor, height // factor), interpolation=cv2.INTER_AREA)
 
 
 def stack_masks(shares: Sequence[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
-    """Masks of several cameras, padded to one size: shares (C, H, W) float32 and bits (C, H, words) uint64."""
+    """Masks of several cameras, padded to one size: shares (C, H, W) uint8 and bits (C, H, words) uint64."""
     height, width = max(s.shape[0] for s in shares), max(s.shape[1] for s in shares)
-    grey = np.zeros((len(shares), height, width), np.float32)
+    grey = np.zeros((len(shares), height, width), np.uint8)
     bits = np.zeros((len(shares), height, -(-width // 64)), np.uint64)
     for c, share in enumerate(shares):
         h, w = share.shape
         grey[c, :h, :w] = share
-        packed = pack_rows(share >= 0.5)
+        packed = pack_rows(share >= HALF)
         bits[c, :h, : packed.shape[1]] = packed
     return grey, bits

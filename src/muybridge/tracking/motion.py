@@ -21,7 +21,7 @@ class Motion:
 
     root_speed: float = 1.25  # metres a second
     root_turn_speed: float = 3.75  # radians a second
-    turn_speed: float = 3.75  # radians a second, of every other joint
+    turn_speed: float = 7.5  # radians a second, of every other joint
     velocity_gain: float = 0.5  # share of the last step that the prediction repeats; 1 feeds noise back
 
     def __post_init__(self) -> None:
@@ -41,9 +41,12 @@ class Motion:
 
 #: At 25 frames a second: 10 mm, 1.5 degrees for the root, 2.5 degrees for the limbs; see docs/benchmarks.md.
 SEARCHING = Motion(root_speed=0.25, root_turn_speed=0.65, turn_speed=1.1)
-MOTIONS = {"guided": Motion()}
+#: One camera sees neither how far away the person is nor whether a limb points towards it: only slowness holds these.
+ONE_CAMERA = Motion(root_speed=0.15, root_turn_speed=0.5, turn_speed=1.0, velocity_gain=0.0)
 
 
-def motion_of(method: str) -> Motion:
-    """What was measured to suit the method."""
-    return MOTIONS.get(method, SEARCHING)
+def motion_of(method: str, cameras: int) -> Motion:
+    """What was measured to suit the method with so many cameras."""
+    if method != "guided":
+        return SEARCHING
+    return Motion() if cameras > 1 else ONE_CAMERA

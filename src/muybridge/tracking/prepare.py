@@ -74,12 +74,12 @@ def prepare(job: Job, eyes: Eyes, body: Body, interval: float, frames: tuple[int
         start, start_frame = _find_start(model, eyes, frames, interval)
         pose = _track_between(model, eyes, interval, start.pose, start_frame, frames[0])
     fit = check = None
-    if job.body.fit or job.calibration.corrected or len(eyes.rig) > 1:
+    if len(eyes.rig) > 1:  # one camera cannot tell a long limb from a near one
         chosen, observations, poses = _look_ahead(model, eyes, interval, pose, frames)
         if job.body.fit and chosen:
             model, fit = fit_body(model, observations, poses, FitConfig())
             poses = fit.poses
-        if len(eyes.rig) > 1 and chosen:
+        if chosen:
             corrected, check = fit_body(
                 model, observations, poses, FitConfig(lengths=False, girths=False, cameras=True)
             )

@@ -129,7 +129,7 @@ class _Run:
     def _motion(self) -> Motion:
         """The method's own, with the job's settings in place of it."""
         given = {name: value for name, value in msgspec.to_builtins(self.job.motion).items() if value is not None}
-        return replace(motion_of(self.job.filter.name), **given)
+        return replace(motion_of(self.job.filter.name, len(self.job.cameras)), **given)
 
     def _track(self, eyes: Eyes, tracker: Tracker, checkpoint: Checkpoint | None) -> None:
         """The loop over frames."""

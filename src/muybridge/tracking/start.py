@@ -8,7 +8,7 @@ lowest silhouette cost wins; how far the next different one is behind says how s
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -18,6 +18,7 @@ from muybridge.errors import InputError
 from muybridge.filters import guided
 from muybridge.filters.dynamics import GaussianWalk
 from muybridge.likelihood.observation import Observation
+from muybridge.likelihood.pictures import HALF
 
 #: Postures to begin from, degrees by degree of freedom; names that a body does not have are left out.
 POSTURES: tuple[Mapping[str, float], ...] = (
@@ -110,7 +111,7 @@ def place_of_masks(rig: Rig, observation: Observation) -> np.ndarray:
     for c in seeing:
         height, width = rig[int(c)].size[1], rig[int(c)].size[0]
         factor = observation.model.reductions[int(c)]
-        rows, columns = np.nonzero(observation.shares[c, : height // factor, : width // factor] >= 0.5)
+        rows, columns = np.nonzero(observation.shares[c, : height // factor, : width // factor] >= HALF)
         middle = (np.array([np.median(columns), np.median(rows)]) + 0.5) * factor - 0.5
         origin, direction = rig[int(c)].pixel_to_ray(middle)
         across = np.eye(3) - np.outer(direction, direction)
@@ -158,4 +159,4 @@ def _climb(observation: Observation, pose: np.ndarray, config: StartConfig, spre
     sd = np.full(len(pose), config.turn_sd)
     sd[:3] = config.place_sd
     dynamics = GaussianWalk(sd, body.lower, body.upper)
-    return guided.climb(pose, np.diag(sd**-2.0), observation, dynamics, replace(guided.WORKING, spreads=spreads))[0]
+    return guided.climb(pose, np.diag(sd**-2.0), observation, dynamics, spreads)[0]

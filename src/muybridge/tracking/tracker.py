@@ -104,12 +104,16 @@ class Tracker:
     @property
     def motion(self) -> Motion:
         """How the person is expected to move."""
-        return self.config.motion or motion_of(self.config.method)
+        return self.config.motion or motion_of(self.config.method, len(self.model.rig))
 
     @cached_property
     def filter_config(self) -> Any:
+        """The method's settings, with the body's limbs where it draws limb by limb.
+
+        With one camera none is redrawn by the guided filter: its silhouette is met by too many wrong ones.
+        """
         config = self.config.filter or METHODS[self.config.method].WORKING
-        if isinstance(config, guided.Config) and not config.blocks:
+        if isinstance(config, guided.Config) and not config.blocks and len(self.model.rig) > 1:
             config = replace(config, blocks=self._limbs()[1:])
         if isinstance(config, annealed.Config) and config.by_limb and config.blocks is None:
             config = replace(config, blocks=self._limbs())
