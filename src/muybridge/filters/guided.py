@@ -101,7 +101,7 @@ class Config(CommonConfig):
     sharpness: float = 200.0  # K, where the likelihood weighs
     estimate: Literal["mean", "maximum"] = "mean"
     spreads: tuple[float, ...] = (0.2, 0.13, 0.085, 0.06, 0.045, 0.035, 0.03, 0.025)  # metres, one a step, falling
-    dependence: float = 45.0  # kappa; 95 % regions then hold 81 to 91 % on demo scenes, see docs/benchmarks.md
+    dependence: float = 60.0  # kappa; 95 % regions then hold 85 to 95 % on demo scenes, see docs/benchmarks.md
     blocks: tuple[tuple[int, ...], ...] = ()  # components that are drawn anew together; empty: never
     redraws: int = 100  # likelihood evaluations spent on each
     tries: int = 4  # of a block's best redraws, so many are climbed from

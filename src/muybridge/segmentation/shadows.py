@@ -25,7 +25,7 @@ class ShadowConfig:
     """Smallest ratio of brightness to the plate's."""
     brightest: float = 1.05
     """Largest ratio; a little above 1, for light reflected by the person."""
-    chroma_change: float = 0.025
+    chroma_change: float = 0.015
     """Largest Euclidean change of the chromaticities b, g, r = B, G, R / (B + G + R)."""
     grey_spread: float = 0.05
     """Grey pictures: largest standard deviation of the ratio over 5 x 5 pixels."""

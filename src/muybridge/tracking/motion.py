@@ -21,7 +21,7 @@ class Motion:
 
     root_speed: float = 1.25  # metres a second
     root_turn_speed: float = 3.75  # radians a second
-    turn_speed: float = 7.5  # radians a second, of every other joint
+    turn_speed: float = 3.75  # radians a second, of every other joint
     velocity_gain: float = 0.5  # share of the last step that the prediction repeats; 1 feeds noise back
 
     def __post_init__(self) -> None:
