@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import gc
 import json
+import shutil
 import tracemalloc
+from dataclasses import replace
+from importlib import import_module
 from pathlib import Path
 
 import cv2
@@ -14,9 +17,12 @@ import pytest
 from muybridge.cameras import write_rig
 from muybridge.errors import InputError
 from muybridge.io import job as jobs
-from muybridge.io.run_folder import RunWriter, read_joints, read_pose
+from muybridge.io.run_folder import RunWriter, read_joints, read_pose, read_summary
 from muybridge.tracking import RunSummary, run
+from muybridge.tracking.fit import Fit
+from muybridge.tracking.prepare import Preparation, prepare
 from muybridge.tracking.run import CHECKPOINT_EVERY
+from muybridge.tracking.start import Start
 from tracking.made import PIXEL, exact_masks, ring, walking
 
 FRAMES = 30
@@ -80,6 +86,12 @@ class Interrupt:
 
 def tables(folder: Path) -> dict[str, bytes]:
     return {name: (folder / name).read_bytes() for name in TABLES}
+
+
+def found_out(plain: Preparation) -> Preparation:
+    """The same as if the start had been searched, the body fitted and the camera checked: quick, with one camera."""
+    fit = Fit({"arm": 1.02}, {"arm": 0.9}, {"arm": 1.1}, np.array([[1.5, -2.0]]), plain.pose[None], 0.008)
+    return replace(plain, start=Start(plain.pose, 0.1, np.inf), start_frame=2, fit=fit, check=fit)
 
 
 @pytest.fixture(scope="module")
@@ -146,6 +158,33 @@ class TestResume:
         summary = run(single, tmp_path, lambda count, total: done.append(count), resume=True)
         assert done[0] == (CHECKPOINT_EVERY + 1 if after >= CHECKPOINT_EVERY else 1)
         assert tables(tmp_path) == tables(uninterrupted) and summary.frames == FRAMES
+
+    def test_tells_what_was_found_before_the_first_frame(
+        self, single: jobs.Job, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        """Start, body and cameras stand in run.json whether the run was broken off or not."""
+        module = import_module("muybridge.tracking.run")
+        monkeypatch.setattr(module, "prepare", lambda *given: found_out(prepare(*given)))
+        run(single, tmp_path / "whole")
+        self.interrupted(single, tmp_path / "broken", CHECKPOINT_EVERY)
+        broken = read_summary(tmp_path / "broken")
+        run(single, tmp_path / "broken", resume=True)
+        whole, resumed = read_summary(tmp_path / "whole"), read_summary(tmp_path / "broken")
+        assert (broken["status"], resumed["status"]) == ("interrupted", "done")
+        assert whole["start"] == {"frame": 2, "cost": 0.1, "rival_cost": None}
+        for facts in ("start", "body_fit", "cameras"):
+            assert whole[facts] == broken[facts] == resumed[facts]
+
+    def test_without_those_facts_goes_on(self, single: jobs.Job, uninterrupted: Path, tmp_path: Path) -> None:
+        """A folder of an older version has none, and a disk may have damaged them."""
+        for damage in ("missing", "{", "[]"):
+            folder = tmp_path / damage
+            shutil.copytree(uninterrupted, folder)
+            (folder / "preparation.json").unlink()
+            if damage != "missing":
+                (folder / "preparation.json").write_text(damage)
+            assert run(single, folder, resume=True).frames == FRAMES
+            assert tables(folder) == tables(uninterrupted)
 
     def test_of_a_whole_run_changes_nothing(self, single: jobs.Job, uninterrupted: Path) -> None:
         before = tables(uninterrupted)
