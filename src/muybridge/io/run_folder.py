@@ -112,6 +112,7 @@ class RunWriter:
         self._poses.write([",".join([when, *(fixed(value, POSE_DECIMALS) for value in np.asarray(pose).tolist())])])
 
     def close(self) -> None:
+        """Close the tables; every frame written is in them."""
         self._joints.close()
         self._poses.close()
 
@@ -132,11 +133,13 @@ class _Table:
         self.write([",".join(header)])
 
     def write(self, lines: Sequence[str]) -> None:
+        """Append lines, given without their ends, and hand them to the operating system."""
         with disk_errors(self.path):
             self._file.write("".join(f"{line}\n" for line in lines))
             self._file.flush()
 
     def close(self) -> None:
+        """Close the file; what it still held may be refused only now."""
         with disk_errors(self.path):
             self._file.close()
 

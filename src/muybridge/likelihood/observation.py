@@ -154,6 +154,7 @@ class Observation:
 
     @property
     def body(self) -> Body:
+        """The model's body."""
         return self.model.body
 
     @property
@@ -163,6 +164,7 @@ class Observation:
 
     @property
     def cues(self) -> CueWeights:
+        """The model's weights of the cues."""
         return self.model.cues
 
     @cached_property

@@ -92,6 +92,7 @@ class _Run:
         self.first, self.last = job.frames or (0, 0)
 
     def go(self, resume: bool) -> RunSummary:
+        """Everything in order: open, prepare or take up the checkpoint, track, summarise."""
         rig, body = rig_of_job(self.job), body_of_job(self.job)
         with open_eyes(self.job, rig, reductions_of(self.job, rig, body), self.cues.need_pictures) as eyes:
             count = check_synchronised(eyes.sources)
