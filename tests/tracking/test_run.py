@@ -26,6 +26,7 @@ from muybridge.tracking.start import Start
 from tracking.made import PIXEL, exact_masks, ring, walking
 
 FRAMES = 30
+WARM, SHORT, LONG = 20, 80, 300  # frames; the short part goes there and back, so that every size of box has been seen
 TABLES = ("joints.csv", "pose.csv", "diagnostics.csv", "body.toml", "cameras.json")
 JOB = """
 name = "made"
@@ -132,19 +133,21 @@ class TestRunFolder:
             run(job(made, frames="[0, 99]"), tmp_path)
 
 
+@pytest.fixture(scope="module")
+def single(made: Path) -> jobs.Job:
+    """A job with one camera: nothing is looked at ahead, so that it is quick."""
+    return job(made, cameras=1)
+
+
+@pytest.fixture(scope="module")
+def uninterrupted(single: jobs.Job, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Its run folder, whole."""
+    out = tmp_path_factory.mktemp("single")
+    run(single, out)
+    return out
+
+
 class TestResume:
-    """One camera: nothing is looked at ahead, so that these are quick."""
-
-    @pytest.fixture(scope="class")
-    def single(self, made: Path) -> jobs.Job:
-        return job(made, cameras=1)
-
-    @pytest.fixture(scope="class")
-    def uninterrupted(self, single: jobs.Job, tmp_path_factory: pytest.TempPathFactory) -> Path:
-        out = tmp_path_factory.mktemp("single")
-        run(single, out)
-        return out
-
     def interrupted(self, single: jobs.Job, out: Path, after: int) -> None:
         with pytest.raises(KeyboardInterrupt):
             run(single, out, Interrupt(after))
@@ -205,23 +208,22 @@ class TestResume:
             run(single, tmp_path, resume=True)
 
 
+@pytest.fixture(scope="module")
+def long(made: Path) -> Path:
+    """The same masks again and again, there and back, so that nobody jumps."""
+    order = [*range(FRAMES), *range(FRAMES - 2, 0, -1)]
+    for frame in range(FRAMES, LONG):
+        (made / f"long_{frame:03d}.png").symlink_to(made / f"c0_{order[frame % len(order)]:03d}.png")
+    for frame in range(FRAMES):
+        (made / f"long_{frame:03d}.png").symlink_to(made / f"c0_{frame:03d}.png")
+    return made
+
+
 class TestMemory:
     """What is held does not grow with the clip: the highest use over sixty frames is that over all others, to 5 %.
 
     Counted by Python, with NumPy's arrays; a single mask (192 x 144) kept a frame would be 5 % after a few frames.
     """
-
-    WARM, SHORT, LONG = 20, 80, 300  # the short part holds a whole there and back, so every size of box that there is
-
-    @pytest.fixture(scope="class")
-    def long(self, made: Path) -> Path:
-        """The same masks again and again, there and back, so that nobody jumps."""
-        order = [*range(FRAMES), *range(FRAMES - 2, 0, -1)]
-        for frame in range(FRAMES, self.LONG):
-            (made / f"long_{frame:03d}.png").symlink_to(made / f"c0_{order[frame % len(order)]:03d}.png")
-        for frame in range(FRAMES):
-            (made / f"long_{frame:03d}.png").symlink_to(made / f"c0_{frame:03d}.png")
-        return made
 
     def peaks(self, made: Path, out: Path, leak: int = 0) -> list[int]:
         """Bytes: the highest use in frames WARM to SHORT, and from there to LONG."""
@@ -234,7 +236,7 @@ class TestMemory:
         def progress(done: int, total: int) -> None:
             kept.append(bytes(leak))
             gc.collect()  # cycles would otherwise wait for a moment that other tests' objects decide
-            if done in (self.WARM, self.SHORT, self.LONG):
+            if done in (WARM, SHORT, LONG):
                 found.append(tracemalloc.get_traced_memory()[1])
                 tracemalloc.reset_peak()
 
