@@ -74,6 +74,15 @@ def bytes_of(state) -> bytes:
     return b"".join(np.ascontiguousarray(array).tobytes() for array in state_to_arrays(state).values())
 
 
+def check_begins_with_as_many_particles_as_are_set(method: Method) -> None:
+    """Those of the config, or of the working settings where none is given; limits may be left out as well."""
+    for given in (small(method), None):
+        settings = (np.random.default_rng(0), np.zeros(SIZE), SD) + (() if given is None else (given,))
+        state = method.init(*settings)
+        assert isinstance(state, method.State)
+        assert state.particles.shape == ((given or method.WORKING).particles, SIZE)
+
+
 def check_shapes_and_limits(method: Method) -> None:
     for estimate in ("mean", "maximum"):
         config = small(method, estimate=estimate)

@@ -9,6 +9,7 @@ from muybridge.errors import InputError
 from muybridge.segmentation import (
     ShadowConfig,
     build_segmenter,
+    has_colour,
     mask_scores,
     median_picture,
     reduce_image,
@@ -29,6 +30,11 @@ def scene(rng, height=120, width=160):
     noise = rng.normal(0, 3, (2, height, width, 3))
     empty, picture = (np.clip(np.rint(a), 0, 255).astype(np.uint8) for a in (empty + noise[0], picture + noise[1]))
     return empty, picture, person, shadow
+
+
+def grey_decoded(picture):
+    """The first channel three times, as a reader of colour pictures gives a grey recording."""
+    return np.repeat(picture[..., :1], 3, axis=2)
 
 
 def test_reduction_is_the_mean_over_each_block():
@@ -121,8 +127,19 @@ def test_shadows_are_removed_in_colour_only_unless_said():
     empty, *_ = scene(np.random.default_rng(5))
     assert build_segmenter("plate", [empty]).shadows == ShadowConfig()
     assert build_segmenter("plate", [empty[..., 0]]).shadows is None
+    assert build_segmenter("plate", [grey_decoded(empty)]).shadows is None
+    assert build_segmenter("hue_key").shadows is None  # nothing to compare with
     assert build_segmenter("plate", [empty[..., 0]], shadows=True).shadows == ShadowConfig()
     assert build_segmenter("plate", [empty], shadows=False).shadows is None
+
+
+def test_colour_is_a_difference_between_channels():
+    """One step of a video's chroma, 3 levels, is none; one pixel of colour is enough."""
+    grey = grey_decoded(np.random.default_rng(6).integers(0, 250, (8, 8, 3), dtype=np.uint8))
+    assert not has_colour(grey) and not has_colour(grey[..., 0]) and not has_colour(grey[..., :1])
+    assert not has_colour(grey + np.uint8([0, 3, 0]))
+    grey[4, 5, 2] += 4
+    assert has_colour(grey)
 
 
 @pytest.mark.parametrize("settings", [{"darkest": 1.2}, {"chroma_change": -1}])

@@ -93,15 +93,17 @@ class TestBody:
         assert not fit.shifts.any()
 
 
-class TestCameras:
-    @pytest.fixture(scope="class")
-    def observed(self, walk):
-        body, poses, _ = walk
-        rig = ring()
-        model = likelihood(body, rig)
-        moved = Rig(tuple(camera.shifted(*shift) for camera, shift in zip(rig, SHIFTS, strict=True)))
-        return model, [model.observe(exact_masks(body, pose, moved)) for pose in poses]
+@pytest.fixture(scope="module")
+def observed(walk):
+    """The model with the cameras as they should be, and the walk as shifted ones see it."""
+    body, poses, _ = walk
+    rig = ring()
+    model = likelihood(body, rig)
+    moved = Rig(tuple(camera.shifted(*shift) for camera, shift in zip(rig, SHIFTS, strict=True)))
+    return model, [model.observe(exact_masks(body, pose, moved)) for pose in poses]
 
+
+class TestCameras:
     def test_shifts(self, walk, observed) -> None:
         """All but what moving the whole world would do as well: the person's place is not the cameras' matter."""
         _, poses, given = walk

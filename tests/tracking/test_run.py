@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import gc
 import json
+import shutil
 import tracemalloc
+from dataclasses import replace
+from importlib import import_module
 from pathlib import Path
 
 import cv2
@@ -14,12 +17,16 @@ import pytest
 from muybridge.cameras import write_rig
 from muybridge.errors import InputError
 from muybridge.io import job as jobs
-from muybridge.io.run_folder import RunWriter, read_joints, read_pose
+from muybridge.io.run_folder import RunWriter, read_joints, read_pose, read_summary
 from muybridge.tracking import RunSummary, run
+from muybridge.tracking.fit import Fit
+from muybridge.tracking.prepare import Preparation, prepare
 from muybridge.tracking.run import CHECKPOINT_EVERY
+from muybridge.tracking.start import Start
 from tracking.made import PIXEL, exact_masks, ring, walking
 
 FRAMES = 30
+WARM, SHORT, LONG = 20, 80, 300  # frames; the short part goes there and back, so that every size of box has been seen
 TABLES = ("joints.csv", "pose.csv", "diagnostics.csv", "body.toml", "cameras.json")
 JOB = """
 name = "made"
@@ -82,6 +89,12 @@ def tables(folder: Path) -> dict[str, bytes]:
     return {name: (folder / name).read_bytes() for name in TABLES}
 
 
+def found_out(plain: Preparation) -> Preparation:
+    """The same as if the start had been searched, the body fitted and the camera checked: quick, with one camera."""
+    fit = Fit({"arm": 1.02}, {"arm": 0.9}, {"arm": 1.1}, np.array([[1.5, -2.0]]), plain.pose[None], 0.008)
+    return replace(plain, start=Start(plain.pose, 0.1, np.inf), start_frame=2, fit=fit, check=fit)
+
+
 @pytest.fixture(scope="module")
 def whole(made: Path, tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, RunSummary]:
     out = tmp_path_factory.mktemp("runs") / "whole"
@@ -120,19 +133,21 @@ class TestRunFolder:
             run(job(made, frames="[0, 99]"), tmp_path)
 
 
+@pytest.fixture(scope="module")
+def single(made: Path) -> jobs.Job:
+    """A job with one camera: nothing is looked at ahead, so that it is quick."""
+    return job(made, cameras=1)
+
+
+@pytest.fixture(scope="module")
+def uninterrupted(single: jobs.Job, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Its run folder, whole."""
+    out = tmp_path_factory.mktemp("single")
+    run(single, out)
+    return out
+
+
 class TestResume:
-    """One camera: nothing is looked at ahead, so that these are quick."""
-
-    @pytest.fixture(scope="class")
-    def single(self, made: Path) -> jobs.Job:
-        return job(made, cameras=1)
-
-    @pytest.fixture(scope="class")
-    def uninterrupted(self, single: jobs.Job, tmp_path_factory: pytest.TempPathFactory) -> Path:
-        out = tmp_path_factory.mktemp("single")
-        run(single, out)
-        return out
-
     def interrupted(self, single: jobs.Job, out: Path, after: int) -> None:
         with pytest.raises(KeyboardInterrupt):
             run(single, out, Interrupt(after))
@@ -146,6 +161,33 @@ class TestResume:
         summary = run(single, tmp_path, lambda count, total: done.append(count), resume=True)
         assert done[0] == (CHECKPOINT_EVERY + 1 if after >= CHECKPOINT_EVERY else 1)
         assert tables(tmp_path) == tables(uninterrupted) and summary.frames == FRAMES
+
+    def test_tells_what_was_found_before_the_first_frame(
+        self, single: jobs.Job, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        """Start, body and cameras stand in run.json whether the run was broken off or not."""
+        module = import_module("muybridge.tracking.run")
+        monkeypatch.setattr(module, "prepare", lambda *given: found_out(prepare(*given)))
+        run(single, tmp_path / "whole")
+        self.interrupted(single, tmp_path / "broken", CHECKPOINT_EVERY)
+        broken = read_summary(tmp_path / "broken")
+        run(single, tmp_path / "broken", resume=True)
+        whole, resumed = read_summary(tmp_path / "whole"), read_summary(tmp_path / "broken")
+        assert (broken["status"], resumed["status"]) == ("interrupted", "done")
+        assert whole["start"] == {"frame": 2, "cost": 0.1, "rival_cost": None}
+        for facts in ("start", "body_fit", "cameras"):
+            assert whole[facts] == broken[facts] == resumed[facts]
+
+    def test_without_those_facts_goes_on(self, single: jobs.Job, uninterrupted: Path, tmp_path: Path) -> None:
+        """A folder of an older version has none, and a disk may have damaged them."""
+        for damage in ("missing", "{", "[]"):
+            folder = tmp_path / damage
+            shutil.copytree(uninterrupted, folder)
+            (folder / "preparation.json").unlink()
+            if damage != "missing":
+                (folder / "preparation.json").write_text(damage)
+            assert run(single, folder, resume=True).frames == FRAMES
+            assert tables(folder) == tables(uninterrupted)
 
     def test_of_a_whole_run_changes_nothing(self, single: jobs.Job, uninterrupted: Path) -> None:
         before = tables(uninterrupted)
@@ -166,23 +208,22 @@ class TestResume:
             run(single, tmp_path, resume=True)
 
 
+@pytest.fixture(scope="module")
+def long(made: Path) -> Path:
+    """The same masks again and again, there and back, so that nobody jumps."""
+    order = [*range(FRAMES), *range(FRAMES - 2, 0, -1)]
+    for frame in range(FRAMES, LONG):
+        (made / f"long_{frame:03d}.png").symlink_to(made / f"c0_{order[frame % len(order)]:03d}.png")
+    for frame in range(FRAMES):
+        (made / f"long_{frame:03d}.png").symlink_to(made / f"c0_{frame:03d}.png")
+    return made
+
+
 class TestMemory:
     """What is held does not grow with the clip: the highest use over sixty frames is that over all others, to 5 %.
 
     Counted by Python, with NumPy's arrays; a single mask (192 x 144) kept a frame would be 5 % after a few frames.
     """
-
-    WARM, SHORT, LONG = 20, 80, 300  # the short part holds a whole there and back, so every size of box that there is
-
-    @pytest.fixture(scope="class")
-    def long(self, made: Path) -> Path:
-        """The same masks again and again, there and back, so that nobody jumps."""
-        order = [*range(FRAMES), *range(FRAMES - 2, 0, -1)]
-        for frame in range(FRAMES, self.LONG):
-            (made / f"long_{frame:03d}.png").symlink_to(made / f"c0_{order[frame % len(order)]:03d}.png")
-        for frame in range(FRAMES):
-            (made / f"long_{frame:03d}.png").symlink_to(made / f"c0_{frame:03d}.png")
-        return made
 
     def peaks(self, made: Path, out: Path, leak: int = 0) -> list[int]:
         """Bytes: the highest use in frames WARM to SHORT, and from there to LONG."""
@@ -195,7 +236,7 @@ class TestMemory:
         def progress(done: int, total: int) -> None:
             kept.append(bytes(leak))
             gc.collect()  # cycles would otherwise wait for a moment that other tests' objects decide
-            if done in (self.WARM, self.SHORT, self.LONG):
+            if done in (WARM, SHORT, LONG):
                 found.append(tracemalloc.get_traced_memory()[1])
                 tracemalloc.reset_peak()
 

@@ -17,6 +17,7 @@ from tracking.made import INTERVAL, PIXEL, empty_masks, errors, exact_masks, lik
 
 FRAMES = 20
 TRUNK = slice(0, 3)  # pelvis, thorax, head top
+GONE = range(6, 18)  # frames in which nobody is seen
 
 
 @pytest.fixture(scope="module")
@@ -93,24 +94,24 @@ class TestFollows:
         assert camera % 2 == 0 or away.mean() < PIXEL
 
 
+@pytest.fixture(scope="module")
+def estimates(clip) -> list[Estimate]:
+    """Of a clip in which nobody is seen for a while."""
+    return follow(clip, lambda frame, masks: empty_masks(clip[2]) if frame in GONE else masks)
+
+
 class TestUnseen:
-    GONE = range(6, 18)
-
-    @pytest.fixture(scope="class")
-    def estimates(self, clip) -> list[Estimate]:
-        return follow(clip, lambda frame, masks: empty_masks(clip[2]) if frame in self.GONE else masks)
-
     def test_unseen_then_lost(self, clip, estimates: list[Estimate]) -> None:
         """`patience` is 8."""
-        gone = [estimates[frame].status for frame in self.GONE]
+        gone = [estimates[frame].status for frame in GONE]
         assert gone == ["unseen"] * 8 + ["lost"] * 4
-        assert {e.status for e in estimates[: self.GONE.start]} == {"tracked"}
+        assert {e.status for e in estimates[: GONE.start]} == {"tracked"}
 
     def test_stays_where_last_seen_and_less_sure(self, estimates: list[Estimate]) -> None:
-        gone = [estimates[frame] for frame in self.GONE]
-        assert all(np.array_equal(e.pose, estimates[self.GONE.start - 1].pose) for e in gone)
+        gone = [estimates[frame] for frame in GONE]
+        assert all(np.array_equal(e.pose, estimates[GONE.start - 1].pose) for e in gone)
         sd = np.array([e.joint_sd for e in gone])
-        assert (np.diff(sd, axis=0) > 0).all() and (sd[0] > estimates[self.GONE.start - 1].joint_sd).all()
+        assert (np.diff(sd, axis=0) > 0).all() and (sd[0] > estimates[GONE.start - 1].joint_sd).all()
         assert all(np.isnan(e.costs).all() and e.evaluations == 0 for e in gone)
 
     def test_found_again(self, clip, estimates: list[Estimate]) -> None:

@@ -57,6 +57,13 @@ def _row(flat, i):
 
 
 @kernel
+def lane_space(dofs, segments):
+    """Room for LANES poses: angles, their cosines and sines (D, LANES), and frames (S, 12 * LANES)."""
+    shape = (dofs, LANES)
+    return np.empty(shape), np.empty(shape), np.empty(shape), np.empty((segments, 12 * LANES))
+
+
+@kernel
 def load_lanes(poses, start, lanes, cosines, sines):
     """Copy poses[start : start + LANES] into lanes (D, LANES), the last pose repeated where there are fewer, and
     turn them.

@@ -1,6 +1,7 @@
 """All cues of many poses in one pass: every segment is projected and drawn once, front to back.
 
-Floors: `measure` (parallel; chain and outlines of LANES poses at once) -> `_one_view` -> the cues' own kernels.
+Floors: `measure` (parallel) -> `_measure_lanes` (chain and outlines of LANES poses at once) -> `_one_view` -> the
+cues' own kernels. What belongs together travels as a tuple: the body, the evidence, the room to draw in.
 A cue that is not wanted costs nothing. Cost with silhouette, colour and boundary: see `bench`.
 """
 
@@ -18,12 +19,12 @@ from muybridge._kernels.boundary import (
     resample_closed,
     trace_largest,
 )
-from muybridge._kernels.chain import LANES, chain_lanes, load_lanes
+from muybridge._kernels.chain import LANES, chain_lanes, lane_space, load_lanes
 from muybridge._kernels.colour import LANES as COLOUR_LANES
 from muybridge._kernels.colour import add_seen, colour_distance
 from muybridge._kernels.draw import fill_word, fill_word_seen, outline_spans
 from muybridge._kernels.edges import outline_edges
-from muybridge._kernels.outline import END, KIND, OUTLINE_COLUMNS, outlines_lanes, take_lane
+from muybridge._kernels.outline import END, KIND, outline_space, outlines_lanes, take_lane
 from muybridge._kernels.silhouette import count_inside, whole_blocks
 
 #: Columns of a result: pixels of the model, of these inside the mask, colour distance D (5.5), distance of Fourier
@@ -92,32 +93,27 @@ def boundary_of(canvas, top, bottom, pixels, spare, xs, ys, square):
 
 
 @kernel
-def _one_view(
-    camera,
-    outlines,
-    order,
-    wanted,
-    mask,
-    table,
-    roots,
-    known,
-    by_area,
-    descriptor,
-    coefficients,
-    edge_map,
-    canvas,
-    spare,
-    first,
-    last,
-    seen,
-    histograms,
-    products,
-    xs,
-    ys,
-    square,
-    out,
-):
-    """One row of results (RESULT_COLUMNS,) for outlines (K, OUTLINE_COLUMNS) in one camera."""
+def _picture_space(words, rows, shapes, wanted):
+    """Room for one picture: canvas and a spare one, both (words, rows) uint64 and the first empty; a segment's first,
+    last and seen pixels by row; histograms (K, LANES) and products (LANES,) for colour; xs, ys of the border, and the
+    descriptor's real and imaginary part with two spare ones (4, SIDE, SIDE).
+    """
+    canvas, spare = np.zeros((words, rows), np.uint64), np.empty((words, rows), np.uint64)
+    first, last, seen = np.empty(rows, np.int64), np.empty(rows, np.int64), np.empty(rows, np.uint64)
+    histograms, products = np.zeros((shapes, COLOUR_LANES), np.int32), np.empty(COLOUR_LANES, np.float32)
+    longest = words * 64 * rows if wanted & WANT_BOUNDARY else 2
+    xs, ys, square = np.empty(longest, np.int32), np.empty(longest, np.int32), np.empty((4, SIDE, SIDE))
+    return canvas, spare, first, last, seen, histograms, products, xs, ys, square
+
+
+@kernel
+def _one_view(camera, outlines, order, wanted, evidence, space, out):
+    """One row of results (RESULT_COLUMNS,) for outlines (K, OUTLINE_COLUMNS) in one camera.
+
+    evidence : what `measure` takes of this camera, from mask to edge map; space : of `_picture_space`.
+    """
+    mask, table, roots, known, by_area, descriptor, coefficients, edge_map = evidence
+    canvas, spare, first, last, seen, histograms, products, xs, ys, square = space
     width, height = int(camera[23]), int(camera[24])
     front_to_back(outlines, order)
     top, bottom, word, end, points, cost = draw_in_order(
@@ -139,6 +135,30 @@ def _one_view(
             out[BOUNDARY] = descriptor_distance(square[0], square[1], descriptor[0], descriptor[1], coefficients)
     for w in range(word, end):
         canvas[w, low:high] = 0
+
+
+@kernel
+def _measure_lanes(start, poses, body, cameras, wanted, evidence, out, histograms_out):
+    """What `measure` does for LANES poses from `start` on.
+
+    body : parent to half_axes; evidence : masks to edge_maps, in the order of `measure`.
+    """
+    parent, fixed, axis, dof, shaped, ends, half_axes = body
+    masks, tables, roots, known, by_area, descriptors, coefficients, edge_maps = evidence
+    lanes, cosines, sines, frames = lane_space(poses.shape[1], parent.shape[0])
+    kinds, ellipses, sides, outlines = outline_space(shaped.shape[0])
+    order = np.empty(shaped.shape[0], np.int64)
+    space = _picture_space(masks.shape[1], masks.shape[2], shaped.shape[0], wanted)
+    load_lanes(poses, start, lanes, cosines, sines)
+    chain_lanes(lanes, cosines, sines, parent, fixed, axis, dof, frames)
+    for c in range(cameras.shape[0]):
+        outlines_lanes(cameras[c], frames, shaped, ends, half_axes, kinds, ellipses, sides)
+        view = masks[c], tables[c], roots[c], known[c], by_area, descriptors[c], coefficients, edge_maps[c]
+        for n in range(start, min(poses.shape[0], start + LANES)):
+            take_lane(kinds, ellipses, sides, n - start, outlines)
+            _one_view(cameras[c], outlines, order, wanted, view, space, out[n, c])
+            if histograms_out.shape[0] > 0:
+                histograms_out[n, c] = space[5]
 
 
 @parallel_kernel
@@ -171,61 +191,10 @@ def measure(
     boundary; edge_maps (C, H, W) float32. What is not wanted may have any size with the same number of cameras.
     histograms_out (N, C, K, LANES) int32 takes the counts unless it is empty.
     """
-    count, rows, shapes = poses.shape[0], masks.shape[2], shaped.shape[0]
-    for chunk in numba.prange((count + LANES - 1) // LANES):
-        shape = (poses.shape[1], LANES)
-        lanes, cosines, sines, frames = (
-            np.empty(shape),
-            np.empty(shape),
-            np.empty(shape),
-            np.empty((parent.shape[0], 12 * LANES)),
-        )
-        kinds, ellipses, sides = (
-            np.empty((shapes, LANES)),
-            np.empty((shapes, 12 * LANES)),
-            np.empty((shapes, 14 * LANES)),
-        )
-        outlines, order = np.empty((shapes, OUTLINE_COLUMNS)), np.empty(shapes, np.int64)
-        canvas = np.zeros((masks.shape[1], rows), np.uint64)
-        spare = np.empty(canvas.shape, np.uint64)
-        first, last, seen = np.empty(rows, np.int64), np.empty(rows, np.int64), np.empty(rows, np.uint64)
-        histograms, products = np.zeros((shapes, COLOUR_LANES), np.int32), np.empty(COLOUR_LANES, np.float32)
-        longest = masks.shape[1] * 64 * rows if wanted & WANT_BOUNDARY else 2
-        xs, ys, square = np.empty(longest, np.int32), np.empty(longest, np.int32), np.empty((4, SIDE, SIDE))
-        start = chunk * LANES
-        load_lanes(poses, start, lanes, cosines, sines)
-        chain_lanes(lanes, cosines, sines, parent, fixed, axis, dof, frames)
-        for c in range(cameras.shape[0]):
-            outlines_lanes(cameras[c], frames, shaped, ends, half_axes, kinds, ellipses, sides)
-            for n in range(start, min(count, start + LANES)):
-                take_lane(kinds, ellipses, sides, n - start, outlines)
-                _one_view(
-                    cameras[c],
-                    outlines,
-                    order,
-                    wanted,
-                    masks[c],
-                    tables[c],
-                    roots[c],
-                    known[c],
-                    by_area,
-                    descriptors[c],
-                    coefficients,
-                    edge_maps[c],
-                    canvas,
-                    spare,
-                    first,
-                    last,
-                    seen,
-                    histograms,
-                    products,
-                    xs,
-                    ys,
-                    square,
-                    out[n, c],
-                )
-                if histograms_out.shape[0] > 0:
-                    histograms_out[n, c] = histograms
+    for chunk in numba.prange((poses.shape[0] + LANES - 1) // LANES):
+        body = parent, fixed, axis, dof, shaped, ends, half_axes
+        evidence = masks, tables, roots, known, by_area, descriptors, coefficients, edge_maps
+        _measure_lanes(chunk * LANES, poses, body, cameras, wanted, evidence, out, histograms_out)
 
 
 @kernel

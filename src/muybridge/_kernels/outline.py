@@ -105,6 +105,17 @@ def outline_lanes(camera, frame, ends, half_axes, kinds, ellipses, sides):
             kinds[lane] = 0.0
 
 
+@vector_kernel
+def _four(rows, first, lane):
+    """One lane's numbers of four rows from `first` on."""
+    return (
+        rows[first * LANES + lane],
+        rows[(first + 1) * LANES + lane],
+        rows[(first + 2) * LANES + lane],
+        rows[(first + 3) * LANES + lane],
+    )
+
+
 @kernel
 def _end_lanes(camera, frame, end, half_axes, out):
     """Ellipses of one end: out (6 * LANES,) takes c_x, c_y, M_xx, M_xy, M_yy and the depth."""
@@ -113,51 +124,18 @@ def _end_lanes(camera, frame, end, half_axes, out):
     r0, r1, r2, r3, r4 = camera[11], camera[12], camera[13], camera[14], camera[15]
     r5, r6, r7, r8, t0, t1, t2 = camera[16], camera[17], camera[18], camera[19], camera[20], camera[21], camera[22]
     e0, e1, e2 = end[0], end[1], end[2]
-    a0, a1, a2, b0, b1, b2 = (
-        half_axes[0, 0],
-        half_axes[0, 1],
-        half_axes[0, 2],
-        half_axes[1, 0],
-        half_axes[1, 1],
-        half_axes[1, 2],
-    )
+    a0, a1, a2 = half_axes[0, 0], half_axes[0, 1], half_axes[0, 2]
+    b0, b1, b2 = half_axes[1, 0], half_axes[1, 1], half_axes[1, 2]
     c0, c1, c2 = half_axes[2, 0], half_axes[2, 1], half_axes[2, 2]
     for lane in range(LANES):
-        f0, f1, f2, f3 = frame[lane], frame[1 * LANES + lane], frame[2 * LANES + lane], frame[3 * LANES + lane]
-        g0, g1, g2, g3 = (
-            frame[4 * LANES + lane],
-            frame[5 * LANES + lane],
-            frame[6 * LANES + lane],
-            frame[7 * LANES + lane],
-        )
-        h0, h1, h2, h3 = (
-            frame[8 * LANES + lane],
-            frame[9 * LANES + lane],
-            frame[10 * LANES + lane],
-            frame[11 * LANES + lane],
-        )
-        wx, wy, wz = (
-            f0 * e0 + f1 * e1 + f2 * e2 + f3,
-            g0 * e0 + g1 * e1 + g2 * e2 + g3,
-            h0 * e0 + h1 * e1 + h2 * e2 + h3,
-        )
+        f0, f1, f2, f3 = _four(frame, 0, lane)
+        g0, g1, g2, g3 = _four(frame, 4, lane)
+        h0, h1, h2, h3 = _four(frame, 8, lane)
+        wx, wy = f0 * e0 + f1 * e1 + f2 * e2 + f3, g0 * e0 + g1 * e1 + g2 * e2 + g3
+        wz = h0 * e0 + h1 * e1 + h2 * e2 + h3
+        x, y = r0 * wx + r1 * wy + r2 * wz + t0, r3 * wx + r4 * wy + r5 * wz + t1
         z = r6 * wx + r7 * wy + r8 * wz + t2
-        u, v, ux, uy, uz, vx, vy, vz = _project(
-            fx,
-            fy,
-            cx,
-            cy,
-            skew,
-            k1,
-            k2,
-            p1,
-            p2,
-            k3,
-            edge,
-            r0 * wx + r1 * wy + r2 * wz + t0,
-            r3 * wx + r4 * wy + r5 * wz + t1,
-            max(z, NEAREST),
-        )
+        u, v, ux, uy, uz, vx, vy, vz = _project(fx, fy, cx, cy, skew, k1, k2, p1, p2, k3, edge, x, y, max(z, NEAREST))
         # derivative by the world point, then by the segment's own coordinates, then along the half axes
         wu0, wu1, wu2 = ux * r0 + uy * r3 + uz * r6, ux * r1 + uy * r4 + uz * r7, ux * r2 + uy * r5 + uz * r8
         wv0, wv1, wv2 = vx * r0 + vy * r3 + vz * r6, vx * r1 + vy * r4 + vz * r7, vx * r2 + vy * r5 + vz * r8
@@ -214,20 +192,8 @@ def _tangent_lanes(ellipses, kinds, sides):
     then by Newton steps.
     """
     for lane in range(LANES):
-        ax, ay, axx, axy, ayy = (
-            ellipses[lane],
-            ellipses[1 * LANES + lane],
-            ellipses[2 * LANES + lane],
-            ellipses[3 * LANES + lane],
-            ellipses[4 * LANES + lane],
-        )
-        bx, by, bxx, bxy, byy = (
-            ellipses[6 * LANES + lane],
-            ellipses[7 * LANES + lane],
-            ellipses[8 * LANES + lane],
-            ellipses[9 * LANES + lane],
-            ellipses[10 * LANES + lane],
-        )
+        (ax, ay, axx, axy), ayy = _four(ellipses, 0, lane), ellipses[4 * LANES + lane]
+        (bx, by, bxx, bxy), byy = _four(ellipses, 6, lane), ellipses[10 * LANES + lane]
         l00, l10, l11, i00, i10, i11, ex, ey, nxx, nxy, nyy = _whiten(axx, axy, ayy, bxx, bxy, byy, bx - ax, by - ay)
         distance = max(1e-9, math.sqrt(ex * ex + ey * ey))
         ux, uy = ex / distance if distance > 1e-9 else 1.0, ey / distance if distance > 1e-9 else 0.0
@@ -267,20 +233,8 @@ def _tangent_lanes(ellipses, kinds, sides):
 @kernel
 def _bisect_tangents(ellipses, sides, lane):
     """The same for one lane where Newton's steps did not settle: thin discs seen edge on."""
-    ax, ay, axx, axy, ayy = (
-        ellipses[lane],
-        ellipses[1 * LANES + lane],
-        ellipses[2 * LANES + lane],
-        ellipses[3 * LANES + lane],
-        ellipses[4 * LANES + lane],
-    )
-    bx, by, bxx, bxy, byy = (
-        ellipses[6 * LANES + lane],
-        ellipses[7 * LANES + lane],
-        ellipses[8 * LANES + lane],
-        ellipses[9 * LANES + lane],
-        ellipses[10 * LANES + lane],
-    )
+    (ax, ay, axx, axy), ayy = _four(ellipses, 0, lane), ellipses[4 * LANES + lane]
+    (bx, by, bxx, bxy), byy = _four(ellipses, 6, lane), ellipses[10 * LANES + lane]
     l00, l10, l11, i00, i10, i11, ex, ey, nxx, nxy, nyy = _whiten(axx, axy, ayy, bxx, bxy, byy, bx - ax, by - ay)
     distance = math.sqrt(ex * ex + ey * ey)
     ux, uy = ex / distance, ey / distance
@@ -342,6 +296,17 @@ def outlines_of(camera, frames, shaped, ends, half_axes, out):
             frame[i * LANES : (i + 1) * LANES] = frames[s, i // 4, i % 4]
         outline_lanes(camera, frame, ends[s], half_axes[s], kinds[0], ellipses[0], sides[0])
         take_lane(kinds, ellipses, sides, 0, out[k : k + 1])
+
+
+@kernel
+def outline_space(shapes):
+    """Room for the outlines of LANES poses, kinds, ellipses and sides as `outlines_lanes` fills them, and for one's."""
+    return (
+        np.empty((shapes, LANES)),
+        np.empty((shapes, 12 * LANES)),
+        np.empty((shapes, 14 * LANES)),
+        np.empty((shapes, OUTLINE_COLUMNS)),
+    )
 
 
 @kernel

@@ -11,9 +11,9 @@ import numpy as np
 
 from muybridge._kernels._jit import kernel, parallel_kernel
 from muybridge._kernels.bits import popcount
-from muybridge._kernels.chain import LANES, chain_lanes, load_lanes
+from muybridge._kernels.chain import LANES, chain_lanes, lane_space, load_lanes
 from muybridge._kernels.draw import BLOCK, draw_outline, transpose_rows
-from muybridge._kernels.outline import OUTLINE_COLUMNS, outlines_lanes, take_lane
+from muybridge._kernels.outline import outline_space, outlines_lanes, take_lane
 
 _0 = np.uint64(0)
 
@@ -66,21 +66,10 @@ def _one_view(outlines, width, height, mask, canvas, first, last, out):
 @parallel_kernel
 def _over_particles(poses, parent, fixed, axis, dof, shaped, ends, half_axes, cameras, masks, out):
     """Fill out (N, C, 2); particles are independent, so that threads change nothing."""
-    count, rows, shapes = poses.shape[0], masks.shape[2], shaped.shape[0]
+    count, rows = poses.shape[0], masks.shape[2]
     for chunk in numba.prange((count + LANES - 1) // LANES):
-        shape = (poses.shape[1], LANES)
-        lanes, cosines, sines, frames = (
-            np.empty(shape),
-            np.empty(shape),
-            np.empty(shape),
-            np.empty((parent.shape[0], 12 * LANES)),
-        )
-        kinds, ellipses, sides = (
-            np.empty((shapes, LANES)),
-            np.empty((shapes, 12 * LANES)),
-            np.empty((shapes, 14 * LANES)),
-        )
-        outlines = np.empty((shapes, OUTLINE_COLUMNS))
+        lanes, cosines, sines, frames = lane_space(poses.shape[1], parent.shape[0])
+        kinds, ellipses, sides, outlines = outline_space(shaped.shape[0])
         canvas = np.zeros((masks.shape[1], rows), np.uint64)
         first, last = np.empty(rows, np.int64), np.empty(rows, np.int64)
         start = chunk * LANES

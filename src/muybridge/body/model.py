@@ -55,6 +55,7 @@ class Body:
 
     @cached_property
     def segment_names(self) -> tuple[str, ...]:
+        """The S names, parents before children."""
         return tuple(segment.name for segment in self.segments)
 
     @cached_property
@@ -65,6 +66,7 @@ class Body:
 
     @cached_property
     def joint_names(self) -> tuple[str, ...]:
+        """The J names of the joints that are reported."""
         return tuple(self.landmarks)
 
     @cached_property
@@ -85,6 +87,7 @@ class Body:
 
     @cached_property
     def arrays(self) -> BodyArrays:
+        """The tree as the kernels take it."""
         return arrays_of(self.segments)
 
     @cached_property
@@ -154,6 +157,7 @@ class Body:
 
     @cached_property
     def radius_groups(self) -> tuple[str, ...]:
+        """Names of the widths and depths that can be scaled."""
         return tuple(dict.fromkeys(s.radius_group for s in self.segments if s.radius_group))
 
     def scaled(

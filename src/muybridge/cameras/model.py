@@ -181,6 +181,7 @@ class Rig:
 
     @property
     def names(self) -> tuple[str, ...]:
+        """The C names, in the order of the cameras."""
         return tuple(camera.name for camera in self.cameras)
 
     def __len__(self) -> int:

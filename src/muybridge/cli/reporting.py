@@ -19,7 +19,9 @@ DONE, BAD_INPUT, LOST, INTERRUPTED = 0, 2, 3, 130
 class Progress(Protocol):
     """What the core may call now and then; it never prints itself."""
 
-    def __call__(self, done: int, total: int | None, message: str = "") -> None: ...
+    def __call__(self, done: int, total: int | None, message: str = "") -> None:
+        """So many of `total` are done, None where nobody knows how many; the message stands beside the bar."""
+        ...
 
 
 Switch = Annotated[bool, Parameter(negative=(), show_default=False)]

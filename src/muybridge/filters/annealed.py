@@ -41,10 +41,10 @@ from muybridge.filters.state import (
     Info,
     Layers,
     Likelihood,
+    PlainInit,
     Population,
     State,
     conclude,
-    initial_state,
     require,
 )
 
@@ -84,17 +84,7 @@ PRINTED = Config(estimate="mean")  # the expectation: Deutscher et al. (2000), s
 WORKING = Config(particles=277, layers=18, survival=0.1, shrink=0.71, contraction=0.8, by_limb=True,
                  estimate="mean", resampling="systematic")  # fmt: skip
 
-
-def init(
-    rng: np.random.Generator,
-    mean: FloatArray,
-    sd: FloatArray,
-    config: Config = WORKING,
-    lower: FloatArray | None = None,
-    upper: FloatArray | None = None,
-) -> State:
-    """Particles around a known pose. mean, sd, lower, upper : (D,) float64, the state's units."""
-    return initial_state(rng, mean, sd, config.particles, lower, upper)
+init = PlainInit(WORKING)  # particles around a known pose
 
 
 def step(

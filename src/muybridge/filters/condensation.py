@@ -28,7 +28,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from muybridge.filters.dynamics import Dynamics
-from muybridge.filters.particles import FloatArray, Weights
+from muybridge.filters.particles import Weights
 from muybridge.filters.resampling import resample
 from muybridge.filters.state import (
     CommonConfig,
@@ -36,10 +36,10 @@ from muybridge.filters.state import (
     Info,
     Layers,
     Likelihood,
+    PlainInit,
     Population,
     State,
     conclude,
-    initial_state,
 )
 
 
@@ -55,17 +55,7 @@ PRINTED = Config()
 # flat as it stands: K = 200 was measured to be a working sharpness for silhouettes from four cameras.
 WORKING = Config(estimate="mean", resampling="systematic", sharpness=200.0)
 
-
-def init(
-    rng: np.random.Generator,
-    mean: FloatArray,
-    sd: FloatArray,
-    config: Config = WORKING,
-    lower: FloatArray | None = None,
-    upper: FloatArray | None = None,
-) -> State:
-    """Particles around a known pose. mean, sd, lower, upper : (D,) float64, the state's units."""
-    return initial_state(rng, mean, sd, config.particles, lower, upper)
+init = PlainInit(WORKING)  # particles around a known pose
 
 
 def step(

@@ -46,9 +46,9 @@ from muybridge.filters.state import (
     Info,
     Layers,
     Likelihood,
+    PlainInit,
     State,
     conclude,
-    initial_state,
     require,
 )
 
@@ -88,17 +88,7 @@ PRINTED = Config()
 WORKING = Config(particles=60, layers=82, c=0.05, difference_scale=0.27, sharpness=1000.0, dynamics_noise=0.5,
                  adaptation="off", partners="other_half", estimate="mean", resampling="systematic")  # fmt: skip
 
-
-def init(
-    rng: np.random.Generator,
-    mean: FloatArray,
-    sd: FloatArray,
-    config: Config = WORKING,
-    lower: FloatArray | None = None,
-    upper: FloatArray | None = None,
-) -> State:
-    """Particles around a known pose. mean, sd, lower, upper : (D,) float64, the state's units."""
-    return initial_state(rng, mean, sd, config.particles, lower, upper)
+init = PlainInit(WORKING)  # particles around a known pose
 
 
 def step(

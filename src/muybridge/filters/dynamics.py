@@ -21,11 +21,19 @@ class Dynamics(Protocol):
     """What a filter needs of a motion model. All arrays (D,) float64 in the state's units."""
 
     @property
-    def noise_sd(self) -> FloatArray: ...
+    def noise_sd(self) -> FloatArray:
+        """Standard deviation of one frame's noise, per component; 0 keeps a component still."""
+        ...
+
     @property
-    def lower(self) -> FloatArray: ...
+    def lower(self) -> FloatArray:
+        """Lower limits; -inf where free."""
+        ...
+
     @property
-    def upper(self) -> FloatArray: ...
+    def upper(self) -> FloatArray:
+        """Upper limits; inf where free."""
+        ...
 
     def sample(
         self,

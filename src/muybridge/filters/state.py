@@ -146,6 +146,28 @@ def initial_state(
     return State(cloud, np.full(particles, -np.log(particles)), mean, np.zeros_like(mean))
 
 
+@dataclass(frozen=True)
+class PlainInit:
+    """The `init` of a method that remembers no more than `State`: so many particles as its config says.
+
+    working : the method's settings where none are given.
+    """
+
+    working: CommonConfig
+
+    def __call__(
+        self,
+        rng: np.random.Generator,
+        mean: FloatArray,
+        sd: FloatArray,
+        config: CommonConfig | None = None,
+        lower: FloatArray | None = None,
+        upper: FloatArray | None = None,
+    ) -> State:
+        """Particles around a known pose. mean, sd, lower, upper : (D,) float64, the state's units."""
+        return initial_state(rng, mean, sd, (config or self.working).particles, lower, upper)
+
+
 @dataclass(frozen=True, eq=False)
 class Population:
     """Measured particles. particles : (N, D); log_likelihoods : (N,), not sharpened; both float64."""

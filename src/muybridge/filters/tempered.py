@@ -42,9 +42,9 @@ from muybridge.filters.state import (
     Info,
     Layers,
     Likelihood,
+    PlainInit,
     State,
     conclude,
-    initial_state,
     require,
 )
 
@@ -78,17 +78,7 @@ PRINTED = Config(estimate="mean")  # no paper prints exactly this; a likelihood 
 WORKING = Config(particles=60, layers=82, survival=0.9, shrink=1.0, sharpness=1000.0, estimate="mean",
                  resampling="systematic")  # fmt: skip
 
-
-def init(
-    rng: np.random.Generator,
-    mean: FloatArray,
-    sd: FloatArray,
-    config: Config = WORKING,
-    lower: FloatArray | None = None,
-    upper: FloatArray | None = None,
-) -> State:
-    """Particles around a known pose. mean, sd, lower, upper : (D,) float64, the state's units."""
-    return initial_state(rng, mean, sd, config.particles, lower, upper)
+init = PlainInit(WORKING)  # particles around a known pose
 
 
 def step(

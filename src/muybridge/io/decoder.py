@@ -76,6 +76,7 @@ class Decoder:
         self.stream.codec_context.thread_type = "NONE" if self.threads == 1 else "AUTO"
 
     def close(self) -> None:
+        """Give the file back; `rewind(None)` opens it again."""
         self.container.close()
 
     def __enter__(self) -> Decoder:

@@ -53,6 +53,7 @@ class ImageSequence:
 
     @property
     def frame_count(self) -> int:
+        """Pictures found."""
         return len(self.files)
 
     def __len__(self) -> int:

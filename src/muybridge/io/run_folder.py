@@ -3,6 +3,7 @@
 joints.csv  frame, time_s, joint, x_m, y_m, z_m, sd_m     one line a joint; world coordinates
 pose.csv    frame, time_s, one column a degree of freedom  angles in radians, translations in metres
 run.json    status, frames, seed, settings, versions, evaluations_per_frame, ms_per_frame, peak_memory_mb
+preparation.json  what run.json adds about start, body and cameras; kept apart for the run that resumes this one
 
 Numbers have a fixed count of decimals, so that equal results give equal bytes. A resumed run writes the tables anew
 from its log.
@@ -22,7 +23,7 @@ import numpy as np
 from muybridge.errors import InputError
 from muybridge.io.disk import disk_errors, make_folder, replace_file
 
-JOINTS_FILE, POSE_FILE, SUMMARY_FILE = "joints.csv", "pose.csv", "run.json"
+JOINTS_FILE, POSE_FILE, SUMMARY_FILE, PREPARATION_FILE = "joints.csv", "pose.csv", "run.json", "preparation.json"
 JOINTS_HEADER = ("frame", "time_s", "joint", "x_m", "y_m", "z_m", "sd_m")
 TIME_DECIMALS = 6
 POSITION_DECIMALS = 6
@@ -111,6 +112,7 @@ class RunWriter:
         self._poses.write([",".join([when, *(fixed(value, POSE_DECIMALS) for value in np.asarray(pose).tolist())])])
 
     def close(self) -> None:
+        """Close the tables; every frame written is in them."""
         self._joints.close()
         self._poses.close()
 
@@ -131,11 +133,13 @@ class _Table:
         self.write([",".join(header)])
 
     def write(self, lines: Sequence[str]) -> None:
+        """Append lines, given without their ends, and hand them to the operating system."""
         with disk_errors(self.path):
             self._file.write("".join(f"{line}\n" for line in lines))
             self._file.flush()
 
     def close(self) -> None:
+        """Close the file; what it still held may be refused only now."""
         with disk_errors(self.path):
             self._file.close()
 
@@ -206,20 +210,40 @@ def write_summary(folder: str | Path, summary: Mapping[str, Any]) -> None:
     missing = [key for key in SUMMARY_KEYS if key not in summary]
     if missing:
         raise InputError(f"{Path(folder) / SUMMARY_FILE}", expected=", ".join(SUMMARY_KEYS), got=f"no {missing[0]}")
-    text = json.dumps(_plain(summary), indent=2, ensure_ascii=False, allow_nan=False)
-    replace_file(make_folder(folder) / SUMMARY_FILE, (text + "\n").encode())
+    _write_object(make_folder(folder) / SUMMARY_FILE, summary)
 
 
 def read_summary(folder: str | Path) -> dict[str, Any]:
     """Read the run.json of a run folder."""
-    file = _table_path(folder, SUMMARY_FILE)
+    return _read_object(_table_path(folder, SUMMARY_FILE))
+
+
+def write_preparation(folder: str | Path, facts: Mapping[str, Any]) -> None:
+    """Write preparation.json whole: what was found before the first frame, as run.json will have it."""
+    _write_object(make_folder(folder) / PREPARATION_FILE, facts)
+
+
+def read_preparation(folder: str | Path) -> dict[str, Any]:
+    """Read the preparation.json of a run folder; empty where it is missing or damaged, for nothing rests on it."""
     try:
-        summary = json.loads(_read_text(file))
+        return _read_object(Path(folder) / PREPARATION_FILE)
+    except InputError:
+        return {}
+
+
+def _write_object(file: Path, content: Mapping[str, Any]) -> None:
+    text = json.dumps(_plain(content), indent=2, ensure_ascii=False, allow_nan=False)
+    replace_file(file, (text + "\n").encode())
+
+
+def _read_object(file: Path) -> dict[str, Any]:
+    try:
+        content = json.loads(_read_text(file))
     except json.JSONDecodeError as error:
         raise InputError(str(file), expected="JSON", got=str(error)) from error
-    if not isinstance(summary, dict):
-        raise InputError(str(file), expected="a JSON object", got=type(summary).__name__)
-    return summary
+    if not isinstance(content, dict):
+        raise InputError(str(file), expected="a JSON object", got=type(content).__name__)
+    return content
 
 
 def _plain(value: Any) -> Any:

@@ -49,6 +49,7 @@ class LogHeader:
 
     @property
     def record_size(self) -> int:
+        """Bytes of a record with its checksum."""
         return _CHECKSUM.size + self.dtype.itemsize
 
 
@@ -88,6 +89,7 @@ class RunLog:
             os.fsync(self._file.fileno())
 
     def close(self) -> None:
+        """Wait until everything is on the disk, then close the file; doing so twice is fine."""
         if not self._file.closed:
             try:
                 self.checkpoint()

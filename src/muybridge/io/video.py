@@ -47,12 +47,25 @@ class PictureSource(Protocol):
     timestamps: np.ndarray
 
     @property
-    def frame_count(self) -> int: ...
+    def frame_count(self) -> int:
+        """Frames that can be read."""
+        ...
+
     def __len__(self) -> int: ...
     def __iter__(self) -> Iterator[tuple[int, float, np.ndarray]]: ...
-    def frames(self, start: int = 0) -> Iterator[tuple[int, float, np.ndarray]]: ...
-    def read(self, index: int) -> np.ndarray: ...
-    def close(self) -> None: ...
+
+    def frames(self, start: int = 0) -> Iterator[tuple[int, float, np.ndarray]]:
+        """Yield (index, time in seconds, picture) from frame `start` to the end."""
+        ...
+
+    def read(self, index: int) -> np.ndarray:
+        """The picture of one frame."""
+        ...
+
+    def close(self) -> None:
+        """Give the files back."""
+        ...
+
     def __enter__(self) -> PictureSource: ...
     def __exit__(self, *exc: object) -> None: ...
 
@@ -87,10 +100,12 @@ class MaskSource:
 
     @property
     def damage(self) -> str:
+        """What is wrong with the pictures they come from; empty where nothing is."""
         return self.pictures.damage
 
     @property
     def frame_count(self) -> int:
+        """Frames that can be read."""
         return self.pictures.frame_count
 
     def __len__(self) -> int:
@@ -109,6 +124,7 @@ class MaskSource:
         return self.pictures.read(index) > self.threshold
 
     def close(self) -> None:
+        """Give the files back."""
         self.pictures.close()
 
     def __enter__(self) -> MaskSource:

@@ -161,6 +161,7 @@ class _PatientFile:
         self._refusal: OSError | None = None
 
     def write(self, data: bytes) -> int:
+        """Write what the system takes; says that it was all, for FFmpeg's sake."""
         rest = memoryview(data)
         try:
             while rest and self._refusal is None:
@@ -170,9 +171,11 @@ class _PatientFile:
         return len(data)
 
     def close(self) -> None:
+        """Close the file; what was refused is still known."""
         self._file.close()
 
     def raise_refusal(self, path: Path) -> None:
+        """Raise InputError about `path` if the system refused anything so far."""
         if self._refusal is not None:
             with disk_errors(path):
                 raise self._refusal

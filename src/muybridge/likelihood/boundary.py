@@ -85,6 +85,7 @@ class BoundaryCue:
 
     @cached_property
     def kernel_input(self) -> BoundaryInput:
+        """What the fused kernel takes for this cue."""
         return BoundaryInput(self.descriptors, self.coefficients)
 
     def log_prob(self, poses: np.ndarray) -> np.ndarray:

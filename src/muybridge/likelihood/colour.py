@@ -147,6 +147,7 @@ class ColourCue:
 
     @cached_property
     def kernel_input(self) -> ColourInput:
+        """What the fused kernel takes for this cue."""
         return ColourInput(self.tables, self.reference.roots, self.reference.known, self.by_area)
 
     def log_prob(self, poses: np.ndarray) -> np.ndarray:

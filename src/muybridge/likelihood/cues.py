@@ -44,6 +44,7 @@ class CueWeights:
 
     @property
     def by_name(self) -> dict[str, float]:
+        """Every cue and its weight, those switched off as well."""
         return {name: getattr(self, name) for name in MAKERS}
 
     @property
@@ -58,26 +59,52 @@ class CueWeights:
 
 
 class Frame(Protocol):
-    """What cues are made of: `observation.Observation`. shares, bits, areas: reduced masks; tables: of colours."""
+    """What cues are made of: `observation.Observation`."""
 
     @property
-    def body(self) -> Body: ...
+    def body(self) -> Body:
+        """Whose outline is compared: K segments with a shape."""
+        ...
+
     @property
-    def cameras(self) -> np.ndarray: ...
+    def cameras(self) -> np.ndarray:
+        """(C, CAMERA_COLUMNS) float64, of the reduced pictures."""
+        ...
+
     @property
-    def cues(self) -> CueWeights: ...
+    def cues(self) -> CueWeights:
+        """Which cues are wanted, and how strongly."""
+        ...
+
     @property
-    def shares(self) -> np.ndarray: ...
+    def shares(self) -> np.ndarray:
+        """(C, H, W) uint8: reduced masks, the share of foreground in every pixel, 0 to FULL."""
+        ...
+
     @property
-    def bits(self) -> np.ndarray: ...
+    def bits(self) -> np.ndarray:
+        """(C, H, words) uint64: the shares thresholded at one half, 64 pixels a word."""
+        ...
+
     @property
-    def areas(self) -> np.ndarray: ...
+    def areas(self) -> np.ndarray:
+        """(C,) int64: foreground pixels of the thresholded masks."""
+        ...
+
     @property
-    def pictures(self) -> tuple[np.ndarray, ...]: ...
+    def pictures(self) -> tuple[np.ndarray, ...]:
+        """C times (H, W, 3) or (H, W) uint8, reduced; none where no cue looks at them."""
+        ...
+
     @property
-    def tables(self) -> np.ndarray: ...
+    def tables(self) -> np.ndarray:
+        """(C, H, W + 1, LANES) uint16: cumulative histograms, see `colour.colour_tables`."""
+        ...
+
     @property
-    def reference(self) -> ColourReference | None: ...
+    def reference(self) -> ColourReference | None:
+        """What the segments look like; None where colour does not count."""
+        ...
 
 
 def fusion_of(frame: Frame, camera_weights: np.ndarray) -> Fusion:
@@ -89,11 +116,13 @@ def fusion_of(frame: Frame, camera_weights: np.ndarray) -> Fusion:
 
 
 def silhouette_cue(frame: Frame, camera_weights: np.ndarray) -> SilhouetteCue:
+    """The body's area against the masks, compared as `silhouette_kind` says; camera_weights (C,)."""
     kind = frame.cues.silhouette_kind
     return SilhouetteCue(frame.body.arrays, frame.cameras, frame.bits, frame.areas, kind, camera_weights)
 
 
 def colour_cue(frame: Frame, camera_weights: np.ndarray) -> ColourCue:
+    """The colours of the visible segments against the reference; camera_weights (C,)."""
     if frame.reference is None:
         remedy = "measure one with Observation.first_reference"
         raise InputError("colour cue", expected="a reference", got="none", remedy=remedy)
@@ -101,12 +130,14 @@ def colour_cue(frame: Frame, camera_weights: np.ndarray) -> ColourCue:
 
 
 def boundary_cue(frame: Frame, camera_weights: np.ndarray) -> BoundaryCue:
+    """The outer borders of body and masks, by their Fourier descriptors; camera_weights (C,)."""
     height, width = frame.shares.shape[1:]
     descriptors, found = descriptors_of([share >= HALF for share in frame.shares])
     return BoundaryCue(frame.body.arrays, frame.cameras, (width, height), descriptors, found, weights=camera_weights)
 
 
 def edge_cue(frame: Frame, camera_weights: np.ndarray) -> EdgeCue:
+    """The pictures' edges near the masks, along the visible outlines; camera_weights (C,)."""
     maps = []
     for picture, share in zip(frame.pictures, frame.shares, strict=True):
         height, width = picture.shape[:2]

@@ -30,7 +30,7 @@ from muybridge.likelihood.contour import (
 from muybridge.likelihood.cues import CueWeights, complete_reference, fusion_of
 from muybridge.likelihood.fusion import Fusion
 from muybridge.likelihood.pictures import FULL, HALF, camera_rows, reduce_mask, stack_masks
-from muybridge.segmentation import reduce_image
+from muybridge.segmentation import has_colour, reduce_image
 
 #: No contour is believed better than this, metres, however well it fits.
 MINIMUM_SD = 0.002
@@ -154,6 +154,7 @@ class Observation:
 
     @property
     def body(self) -> Body:
+        """The model's body."""
         return self.model.body
 
     @property
@@ -163,6 +164,7 @@ class Observation:
 
     @property
     def cues(self) -> CueWeights:
+        """The model's weights of the cues."""
         return self.model.cues
 
     @cached_property
@@ -188,7 +190,7 @@ class Observation:
     def first_reference(self, pose: np.ndarray) -> ColourReference:
         """What every segment looks like if this frame's pose is (D,), hidden ones filled."""
         for camera, picture in zip(self.model.rig, self.pictures, strict=True):
-            if picture.ndim != 3 or not (np.ptp(picture, axis=2) > 0).any():
+            if not has_colour(picture):
                 raise InputError(f"camera {camera.name!r}", expected="colour pictures, for the cue of colour",
                                  got="grey ones", remedy="set the weight of colour to 0")  # fmt: skip
         return complete_reference(self, pose)

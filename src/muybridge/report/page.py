@@ -93,6 +93,7 @@ def table(header: list[str], rows: list[list[str]], numbers: set[int] | None = N
     """A table of text; the columns in `numbers` are set flush right."""
 
     def line(cells: list[str], tag: str) -> str:
+        """A row of the table; tag is td or th."""
         kinds = [' class="number"' if i in (numbers or set()) else "" for i in range(len(cells))]
         return (
             "<tr>"

@@ -14,7 +14,7 @@ A model alone is `model.apply(image)`; a `Segmenter` adds what comes before (red
 from muybridge.segmentation.cleaning import CleaningConfig, clean, near
 from muybridge.segmentation.gaussian import GaussianBackground, GaussianConfig
 from muybridge.segmentation.hue_key import HueKey, HueKeyConfig
-from muybridge.segmentation.pictures import median_picture, reduce_image
+from muybridge.segmentation.pictures import has_colour, median_picture, reduce_image
 from muybridge.segmentation.plate import PlateBackground, PlateConfig
 from muybridge.segmentation.plate_making import make_plate
 from muybridge.segmentation.registry import BACKGROUND_MODELS, BackgroundModel, build_background
@@ -37,6 +37,7 @@ __all__ = [
     "build_background",
     "build_segmenter",
     "clean",
+    "has_colour",
     "make_plate",
     "mask_scores",
     "median_picture",

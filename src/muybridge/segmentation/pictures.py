@@ -9,6 +9,9 @@ from numpy.typing import NDArray
 
 from muybridge.errors import InputError
 
+#: Levels between the channels of a grey picture: one step of a video's chroma moves a channel by so much.
+GREY_RANGE = 3
+
 
 def with_channels(image: NDArray) -> NDArray:
     """The picture as (H, W, channels); a grey (H, W) picture gets its one channel.
@@ -23,6 +26,16 @@ def with_channels(image: NDArray) -> NDArray:
     if picture.ndim != 3 or picture.shape[2] not in (1, 3) or 0 in picture.shape:
         raise InputError("picture", expected="(H, W), (H, W, 1) or (H, W, 3)", got=str(np.shape(image)))
     return picture
+
+
+def has_colour(image: NDArray) -> bool:
+    """Whether the channels differ anywhere; those of a grey recording that was decoded as BGR do not.
+
+    Parameters
+    ----------
+    image : (H, W) or (H, W, 1) or (H, W, 3) uint8 or float32
+    """
+    return bool((np.ptp(with_channels(image), axis=2) > GREY_RANGE).any())
 
 
 def check_same_shape(image: NDArray, shape: tuple[int, ...]) -> NDArray:

@@ -9,7 +9,7 @@ from typing import Any
 from numpy.typing import NDArray
 
 from muybridge.segmentation.cleaning import Box, CleaningConfig, clean
-from muybridge.segmentation.pictures import reduce_image
+from muybridge.segmentation.pictures import has_colour, reduce_image
 from muybridge.segmentation.registry import BackgroundModel, build_background
 from muybridge.segmentation.shadows import ShadowConfig, remove_shadows
 
@@ -60,7 +60,7 @@ def build_segmenter(
     factor : float
         Reduction, in (0, 1].
     shadows : ShadowConfig or bool, optional
-        None: removed from colour pictures only. Without colour the test costs more of the person than it gains.
+        None: removed where the empty scene has colour. Without colour the test costs more of the person than it gains.
     cleaning : CleaningConfig, optional
         None leaves it out.
     settings
@@ -68,7 +68,7 @@ def build_segmenter(
     """
     reduced = [reduce_image(picture, factor) for picture in pictures]
     if shadows is None:
-        shadows = all(picture.ndim == 3 and picture.shape[2] == 3 for picture in reduced)
+        shadows = any(map(has_colour, reduced))
     if isinstance(shadows, bool):
         shadows = ShadowConfig() if shadows else None
     return Segmenter(build_background(name, reduced, **settings), factor, shadows, cleaning)

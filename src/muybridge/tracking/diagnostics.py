@@ -33,6 +33,7 @@ class DiagnosticsWriter:
             self._file.flush()
 
     def close(self) -> None:
+        """Close the table; every frame written is in it."""
         with disk_errors(self.path):
             self._file.close()
 

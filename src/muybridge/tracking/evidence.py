@@ -16,7 +16,14 @@ from muybridge.cameras.model import Camera, Rig
 from muybridge.errors import InputError
 from muybridge.io.job import CameraInput, Job, background_config
 from muybridge.io.video import MaskSource, PictureSource, open_masks, open_pictures
-from muybridge.segmentation import BACKGROUND_MODELS, CleaningConfig, Segmenter, ShadowConfig, reduce_image
+from muybridge.segmentation import (
+    BACKGROUND_MODELS,
+    CleaningConfig,
+    Segmenter,
+    ShadowConfig,
+    has_colour,
+    reduce_image,
+)
 
 MARGIN_M = 0.45  # metres round the expected joints in which the person is looked for
 MEDIAN = 5  # pixels of a ready-made mask; takes speckle away
@@ -173,7 +180,7 @@ def _sized(size: Sequence[int]) -> str:
 
 
 def build_segmenter(entry: CameraInput, reduction: int) -> Segmenter:
-    """The camera's background model, trained at the reduced size."""
+    """The camera's background model, trained at the reduced size; shadows go where the empty scene has colour."""
     background = entry.background
     if background is None:
         raise InputError(
@@ -185,8 +192,7 @@ def build_segmenter(entry: CameraInput, reduction: int) -> Segmenter:
     config = background_config(entry)
     model = BACKGROUND_MODELS[background.kind]
     empty = _empty_pictures(entry, reduction) if model.needs_pictures else []
-    in_colour = not empty or (empty[0].ndim == 3)
-    shadows = in_colour if background.shadows is None else background.shadows
+    shadows = any(map(has_colour, empty)) if background.shadows is None else background.shadows
     return Segmenter(model.build(empty, config), 1.0 / reduction, ShadowConfig() if shadows else None, CleaningConfig())
 
 

@@ -128,9 +128,11 @@ class _Problem:
         self.groups = [segment.radius_group for segment in model.body.segments]
 
     def split(self, unknown: np.ndarray) -> list[np.ndarray]:
+        """The unknowns (size,) by kind: log lengths, log widths, log depths, shifts (2 C,) in reduced pixels."""
         return np.split(unknown, self.ends[:-1])
 
     def apply(self, unknown: np.ndarray) -> ImageLikelihood:
+        """The model with the unknowns (size,) put into its body and rig."""
         lengths, widths, depths, shifts = self.split(unknown)
         body = self.model.body.scaled(
             lengths=dict(zip(self.lengths, np.exp(lengths), strict=True)),
@@ -170,6 +172,7 @@ class _Problem:
         return np.column_stack(columns)
 
     def describe(self, unknown: np.ndarray, poses: np.ndarray, residual: float) -> Fit:
+        """The unknowns (size,) as people read them, with poses (F, D) and the residual in metres."""
         lengths, widths, depths, shifts = self.split(unknown)
         full = np.zeros((len(self.model.rig), 2))
         if len(shifts):

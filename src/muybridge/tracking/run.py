@@ -25,7 +25,7 @@ from muybridge.errors import InputError
 from muybridge.filters import METHODS
 from muybridge.io.disk import make_folder
 from muybridge.io.job import Job, filter_config
-from muybridge.io.run_folder import RunWriter, write_summary
+from muybridge.io.run_folder import RunWriter, read_preparation, write_preparation, write_summary
 from muybridge.io.run_log import create_log, job_digest, read_records
 from muybridge.io.synchronise import check_synchronised, synchronised
 from muybridge.likelihood.cues import CueWeights
@@ -92,6 +92,7 @@ class _Run:
         self.first, self.last = job.frames or (0, 0)
 
     def go(self, resume: bool) -> RunSummary:
+        """Everything in order: open, prepare or take up the checkpoint, track, summarise."""
         rig, body = rig_of_job(self.job), body_of_job(self.job)
         with open_eyes(self.job, rig, reductions_of(self.job, rig, body), self.cues.need_pictures) as eyes:
             count = check_synchronised(eyes.sources)
@@ -103,6 +104,7 @@ class _Run:
                 prepared = self.preparation = self._prepare(eyes, body)
                 write_body(self.out / BODY_FILE, prepared.model.body)
                 write_rig(self.out / CAMERAS_FILE, prepared.model.rig)
+                write_preparation(self.out, prepared.to_dict())
             tracker = self._tracker(eyes)
             try:
                 self._track(eyes, tracker, checkpoint)
@@ -216,11 +218,8 @@ class _Run:
             "likelihood": asdict(self.cues),
             "reductions": list(tracker.model.reductions),
         }
-        extra = self.preparation.to_dict() if self.preparation else {}
-        write_summary(
-            self.out,
-            {**asdict(summary), "settings": settings, "versions": _versions(), "lost_frames": self.lost, **extra},
-        )
+        facts = {"settings": settings, "versions": _versions(), "lost_frames": self.lost}
+        write_summary(self.out, {**asdict(summary), **facts, **read_preparation(self.out)})
         return summary
 
 
