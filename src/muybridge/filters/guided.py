@@ -71,11 +71,19 @@ class Linearised(Protocol):
     """
 
     @property
-    def curvature(self) -> FloatArray: ...
+    def curvature(self) -> FloatArray:
+        """(D, D), minus the second derivative."""
+        ...
+
     @property
-    def gradient(self) -> FloatArray: ...
+    def gradient(self) -> FloatArray:
+        """(D,), the first derivative."""
+        ...
+
     @property
-    def noise(self) -> float: ...
+    def noise(self) -> float:
+        """Variance of the residuals over the one assumed."""
+        ...
 
 
 class GuidingLikelihood(Likelihood, Protocol):

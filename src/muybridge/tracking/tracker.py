@@ -81,10 +81,12 @@ class Estimate:
 
     @property
     def ess(self) -> float:
+        """Effective number of particles, (3.18); NaN in a frame that showed nobody."""
         return self.info.ess if self.info is not None else float("nan")
 
     @property
     def evaluations(self) -> int:
+        """Likelihood evaluations that the frame took."""
         return self.info.evaluations if self.info is not None else 0
 
 
