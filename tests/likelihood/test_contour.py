@@ -62,6 +62,22 @@ class TestResiduals:
             tolerance = 1.5 * rows.metres  # steps, and the depth of a point that is not the root's
             assert (np.abs(rows.distance) <= np.maximum(1.5 * spread * 1.15, 2 * rows.metres) + tolerance).all()
 
+    def test_of_one_limb(self, scene) -> None:
+        """The rows of the segments that it moves, as among all; its derivatives are those of these rows."""
+        model, pose, masks = scene
+        observation, arm = model.observe(masks), model.body.blocks["left_arm"]
+        limb = np.flatnonzero(model.body.moved_by[:, arm].any(axis=1))
+        for spread in (2 * UNCOVERED_SPREAD, 0.5 * UNCOVERED_SPREAD):
+            whole, part = observation.contour(pose, spread), observation.contour(pose, spread, moved=arm)
+            own = np.isin(whole.segment, limb)
+            assert 0 < own.sum() < len(own)
+            np.testing.assert_array_equal(part.distance, whole.distance[own])
+            np.testing.assert_array_equal(part.slopes, whole.slopes[own])
+            seen = observation.normal_equations(pose, spread, arm)
+            slopes = part.slopes[:, arm] * (robust_weights(part.distance, spread) / model.row_sd**2)[:, None]
+            np.testing.assert_allclose(seen.gradient, slopes.T @ part.distance)
+            np.testing.assert_allclose(seen.curvature, slopes.T @ part.slopes[:, arm])
+
     def test_nothing_seen(self, scene) -> None:
         model, pose, masks = scene
         seen = model.observe([np.zeros_like(mask) for mask in masks]).normal_equations(pose, 0.05)

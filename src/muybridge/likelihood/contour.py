@@ -146,7 +146,11 @@ def contour_rows(
         rows,
         slopes,
     )
-    rows, slopes = rows[:count], slopes[:count]
+    return _in_metres(rows[:count], slopes[:count])
+
+
+def _in_metres(rows: np.ndarray, slopes: np.ndarray) -> ContourRows:
+    """The kernel's rows (R, ROW_COLUMNS) and slopes (R, D), pixels, by name and in metres."""
     metres = rows[:, kernel.METRES]
     return ContourRows(
         camera=rows[:, kernel.CAMERA].astype(np.int64),
