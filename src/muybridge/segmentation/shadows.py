@@ -2,8 +2,8 @@
 
 A shadow scales the light of what it falls on and leaves its colour nearly alone. So a pixel is shadow where brightness
 over the plate's brightness lies in a range below and about 1 and the chromaticity (b, g, r over their sum) has hardly
-moved. A grey picture has no colour; there the ratio must be even over a small window, because a shadow keeps
-the texture of the ground and a person does not.
+moved: the less, the darker it has become. A grey picture has no colour; there the ratio must be even over a small
+window, because a shadow keeps the texture of the ground and a person does not.
 """
 
 from __future__ import annotations
@@ -25,8 +25,11 @@ class ShadowConfig:
     """Smallest ratio of brightness to the plate's."""
     brightest: float = 1.05
     """Largest ratio; a little above 1, for light reflected by the person."""
-    chroma_change: float = 0.015
+    chroma_change: float = 0.025
     """Largest Euclidean change of the chromaticities b, g, r = B, G, R / (B + G + R)."""
+    sure_above: float = 0.9
+    """Below this ratio of brightness the largest change falls with the ratio's square: dark skin before a light wall has
+    nearly the wall's chromaticity, and few shadows are that deep."""
     grey_spread: float = 0.05
     """Grey pictures: largest standard deviation of the ratio over 5 x 5 pixels."""
     minimum_brightness: float = 12.0
@@ -36,6 +39,8 @@ class ShadowConfig:
         if not 0 <= self.darkest < self.brightest:
             raise InputError("shadow brightness range", expected="0 <= darkest < brightest",
                              got=f"{self.darkest:g} and {self.brightest:g}")  # fmt: skip
+        if self.sure_above <= 0:
+            raise InputError("shadow sure_above", expected="above 0", got=f"{self.sure_above:g}")
         if self.chroma_change < 0 or self.grey_spread < 0:
             raise InputError("shadow chroma_change and grey_spread", expected="0 or more",
                              got=f"{self.chroma_change:g} and {self.grey_spread:g}")  # fmt: skip
@@ -82,7 +87,8 @@ def _only_darker(picture: NDArray, empty: NDArray, config: ShadowConfig) -> NDAr
     ratio = light / np.maximum(light_before, 1)
     before = empty / np.maximum(light_before, 1)[..., None]
     change = picture / np.maximum(light, 1)[..., None] - before
-    return _in_range(ratio, light_before / 3, config) & (np.square(change).sum(axis=-1) <= config.chroma_change**2)
+    largest = config.chroma_change * np.square(np.minimum(1.0, ratio / config.sure_above))
+    return _in_range(ratio, light_before / 3, config) & (np.square(change).sum(axis=-1) <= np.square(largest))
 
 
 def _in_range(ratio: NDArray, light_before: NDArray, config: ShadowConfig) -> NDArray:
