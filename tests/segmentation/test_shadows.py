@@ -13,7 +13,7 @@ WALL = np.array([150.0, 160.0, 170.0], np.float32)
 
 
 def changed(ratio: float, change: float) -> np.ndarray:
-    """The wall with its brightness scaled and its chromaticity moved by `change` (Euclidean), as a picture (1, 1, 3)."""
+    """The wall with its brightness scaled and its chromaticity moved by `change` (Euclidean): (1, 1, 3)."""
     chroma = WALL / WALL.sum() + change / np.sqrt(2.0) * np.array([-1.0, 0.0, 1.0])
     return (WALL.sum() * ratio * chroma).astype(np.float32)[None, None]
 

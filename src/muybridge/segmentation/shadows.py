@@ -28,7 +28,7 @@ class ShadowConfig:
     chroma_change: float = 0.025
     """Largest Euclidean change of the chromaticities b, g, r = B, G, R / (B + G + R)."""
     sure_above: float = 0.9
-    """Below this ratio of brightness the largest change falls with the ratio's square: dark skin before a light wall has
+    """Below this ratio of brightness the largest change falls with its square: dark skin before a light wall has
     nearly the wall's chromaticity, and few shadows are that deep."""
     grey_spread: float = 0.05
     """Grey pictures: largest standard deviation of the ratio over 5 x 5 pixels."""
