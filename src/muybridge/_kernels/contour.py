@@ -30,23 +30,10 @@ from muybridge._kernels.outline import END, KIND, OUTLINE_COLUMNS, SIDE, outline
 #: Columns of a row: camera, segment, distance d, metres per pixel at the point, normal x, y, pixel x, y, place along
 #: the segment (0 base, 1 tip), pixels per log width, pixels per log depth, alignment of border and normal, and the
 #: point P, world, metres.
-CAMERA, SEGMENT, DISTANCE, METRES, NORMAL, PIXEL, ALONG, WIDTH, DEPTH, ALIGNMENT, POINT = (
-    0,
-    1,
-    2,
-    3,
-    4,
-    6,
-    8,
-    9,
-    10,
-    11,
-    12,
-)
-ROW_COLUMNS = 15
+CAMERA, SEGMENT, DISTANCE, METRES, NORMAL, PIXEL = 0, 1, 2, 3, 4, 6
+ALONG, WIDTH, DEPTH, ALIGNMENT, POINT, ROW_COLUMNS = 8, 9, 10, 11, 12, 15
 NEIGHBOUR = 1.5  # pixels outwards; a point whose neighbour there lies in another segment is no border
 UNCOVERED = 1.5  # pixels outside every segment from which a border point of the mask counts as unexplained
-LARGEST_END = 60.0  # pixels; no end reaches further from its middle
 CAP_ANGLES = (-1.05, -0.52, 0.0, 0.52, 1.05)  # radians round the axis direction
 TURNS = 12  # points round a segment that is seen as one ellipse
 
@@ -281,7 +268,8 @@ def nearest_uncovering(outlines, shaped, stiffness, x, y, row):
             t = min(1.0, max(0.0, ((x - out[END]) * dx + (y - out[END + 1]) * dy) / square))
         vx, vy = x - out[END] - t * dx, y - out[END + 1] - t * dy
         length = math.sqrt(vx * vx + vy * vy)
-        if (length - LARGEST_END) * stiff > best or length < 1e-9:
+        farthest = math.sqrt(max(out[END + 2] + out[END + 4], out[END + 8] + out[END + 10]))  # of the ends' borders
+        if (length - farthest) * stiff > best or length < 1e-9:
             continue
         vx, vy = vx / length, vy / length
         away = length - (1.0 - t) * support(out, END, vx, vy) - t * support(out, END + 6, vx, vy)

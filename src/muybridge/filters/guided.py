@@ -31,8 +31,9 @@ pose climbs once more from the prediction with that limb put there and set free 
 widened at its components. That pose is taken if it has clearly less misfit. How much less is a share of the misfit
 there is: where masks are bad, chance differences are larger too.
 
-Cost: `len(spreads)` looks at the contour a frame; with blocks, `redraws` likelihood evaluations and about two looks at
-one limb's contour for each, and for every limb that is put elsewhere one climb more.
+Cost: `len(spreads)` looks at the contour and N likelihood evaluations a frame. With blocks, for each: `redraws`
+evaluations, and half as many looks, at that limb's contour alone, for every draw that is climbed from; and one whole
+climb more wherever a limb may be better elsewhere.
 """
 
 from __future__ import annotations
@@ -109,7 +110,7 @@ class Config(CommonConfig):
     sharpness: float = 200.0  # K, where the likelihood weighs
     estimate: Literal["mean", "maximum"] = "mean"
     spreads: tuple[float, ...] = (0.2, 0.13, 0.085, 0.06, 0.045, 0.035, 0.03, 0.025)  # metres, one a step, falling
-    dependence: float = 60.0  # kappa; 95 % regions then hold 85 to 95 % on demo scenes, see docs/benchmarks.md
+    dependence: float = 60.0  # kappa; 95 % regions then hold 82 to 95 % on demo scenes, see docs/benchmarks.md
     blocks: tuple[tuple[int, ...], ...] = ()  # components that are drawn anew together; empty: never
     redraws: int = 100  # likelihood evaluations spent on each
     tries: int = 4  # of a block's best redraws, so many are climbed from
@@ -171,7 +172,7 @@ def step(
     prior = _Prior(prediction, moved, dynamics)
     peak = _climb_all(prior, counted, likelihood, config.spreads)
     for block in config.blocks if config.redraws else ():
-        peak = _redraw(rng, np.array(block), peak, prior, counted, likelihood, config)
+        peak = _redraw(rng, np.array(block), peak, counted, likelihood, config)
     mode = peak.pose
     precision = peak.seen.curvature / (config.dependence * peak.seen.noise) + peak.prior.precision
     standard = rng.standard_normal((config.particles, mode.size))
@@ -257,13 +258,12 @@ def _redraw(
     rng: np.random.Generator,
     block: NDArray[np.intp],
     peak: _Peak,
-    prior: _Prior,
     counted: CountingLikelihood,
     likelihood: GuidingLikelihood,
     config: Config,
 ) -> _Peak:
     """Draw one block anew; the peak that explains the picture best."""
-    dynamics = prior.dynamics
+    dynamics = peak.prior.dynamics
     low, high = np.maximum(dynamics.lower[block], -np.pi), np.minimum(dynamics.upper[block], np.pi)
     drawn = np.repeat(peak.pose[None], config.redraws, axis=0)
     drawn[:, block] = rng.uniform(low, high, (config.redraws, block.size))
