@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import cv2
 import numpy as np
 import pytest
 
-from muybridge.likelihood.contour import Borders, contour_rows
+from muybridge.likelihood.contour import Borders, contour_rows, no_borders
 from muybridge.likelihood.pictures import FULL
 from reference import contour as slow
 from reference.scene import SLOW, WIDE, camera, count, random_poses, rows, standing
@@ -62,3 +63,16 @@ def test_slopes_of_the_other_sign_would_be_noticed(found):
             )
             wrong += abs(-residuals.slopes[i, dof] - moved * residuals.metres[i]) > 2.0 * WIDEST / DISTANCE
     assert wrong > 0
+
+
+def test_what_a_wide_trunk_covers_is_explained():
+    """A large picture: the trunk's half width is about 100 pixels. Points inside the body's own mask ask for nothing."""
+    body, pose = standing()
+    view = rows(camera(0.4, (2560, 1920), DISTANCE))
+    mask = model_mask(pose, body.arrays, view[0]).astype(np.uint8)
+    inside = np.argwhere(cv2.erode(mask, np.ones((5, 5), np.uint8)))[::97, ::-1].astype(float)
+    points = Borders(inside[None], np.array([len(inside)]))
+    masks = (mask * np.uint8(FULL))[None]
+    with_points = contour_rows(body, view, masks, points, pose, 0.2)
+    without = contour_rows(body, view, masks, no_borders(1), pose, 0.2)
+    assert len(inside) > 1000 and len(with_points.distance) == len(without.distance) > 0
