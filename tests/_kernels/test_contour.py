@@ -66,7 +66,7 @@ def test_slopes_of_the_other_sign_would_be_noticed(found):
 
 
 def test_what_a_wide_trunk_covers_is_explained():
-    """A large picture: the trunk's half width is about 100 pixels. Points inside the body's own mask ask for nothing."""
+    """Here a trunk is over 100 pixels wide on either side of its axis. Points inside the own mask ask for nothing."""
     body, pose = standing()
     view = rows(camera(0.4, (2560, 1920), DISTANCE))
     mask = model_mask(pose, body.arrays, view[0]).astype(np.uint8)
