@@ -18,7 +18,8 @@ from muybridge.cli import app
 from muybridge.io.run_folder import read_joints
 from muybridge.io.video_writer import VideoWriter
 from muybridge.synthetic.motion import Motion
-from muybridge.synthetic.scene import Scene, render, ring
+from muybridge.synthetic.rigs import ring
+from muybridge.synthetic.scene import Person, Scene, render
 from muybridge.synthetic.write import write_scene
 
 SOURCES = Path(__file__).resolve().parents[2] / "src"
@@ -40,7 +41,7 @@ def scene(made: Path, tmp_path: Path) -> Path:
 
 
 def small_scene() -> Scene:
-    return Scene(ring(np.random.default_rng(3), 2, size=SIZE), motion=Motion("walk", 0.4, RATE))
+    return Scene(ring(np.random.default_rng(3), 2, size=SIZE), Person(motion=Motion("walk", 0.4, RATE)))
 
 
 def grey_video(path: Path, frames: int = 10, size: tuple[int, int] = SIZE, rate: float = RATE) -> None:

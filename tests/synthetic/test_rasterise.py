@@ -7,7 +7,7 @@ import pytest
 
 from muybridge._kernels.rasterise import blend_skin, empty_buffers, fill_triangles, vertex_normals
 from muybridge.cameras.model import Camera
-from muybridge.synthetic.rasterise import Cloth, Layer, coverage_of, draw
+from muybridge.synthetic.rasterise import Cloth, Layer, Mesh, coverage_of, draw
 
 GREY = Cloth(np.full((1, 2, 2, 2, 3), 100.0, dtype=np.float32), np.array([1.0]))
 
@@ -34,7 +34,8 @@ def straight_camera(focal: float = 500.0, distortion: tuple[float, ...] = (0, 0,
 def drawn(camera, vertices, faces, **settings) -> Layer:
     normals = np.empty_like(vertices)
     vertex_normals(vertices, faces, normals)
-    return draw(camera, vertices, faces, normals, vertices, np.zeros(len(faces), dtype=np.int32), GREY, **settings)
+    labels = np.zeros(len(faces), dtype=np.int32)
+    return draw(camera, Mesh(vertices, normals, faces, vertices, labels, labels), GREY, **settings)
 
 
 class TestSphere:

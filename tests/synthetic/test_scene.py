@@ -11,8 +11,19 @@ from muybridge.cameras.model import Rig
 from muybridge.errors import InputError
 from muybridge.evaluation.names import JOINTS
 from muybridge.synthetic.motion import Motion
+from muybridge.synthetic.rigs import looking_at
 from muybridge.synthetic.room import Room, picture
-from muybridge.synthetic.scene import DEMO_OUTFIT, Garment, Scene, demo_scene, empty, looking_at, render, stage, truth
+from muybridge.synthetic.scene import (
+    DEMO_OUTFIT,
+    Garment,
+    Person,
+    Scene,
+    demo_scene,
+    empty,
+    render,
+    stage,
+    truth,
+)
 
 
 def small(scene: Scene, factor: float = 0.25) -> Scene:
@@ -95,11 +106,12 @@ class TestRender:
 
     def test_an_outfit_must_be_whole(self):
         with pytest.raises(InputError, match="outfit: expected an entry for each of .*none for shirt"):
-            render(replace(SCENE, outfit=DEMO_OUTFIT[1:]), 0)
+            render(replace(SCENE, person=replace(SCENE.person, outfit=DEMO_OUTFIT[1:])), 0)
 
     def test_unknown_pattern(self):
         with pytest.raises(InputError, match="pattern"):
-            render(replace(SCENE, outfit=(Garment("shirt", "tartan", (0, 0, 0)), *DEMO_OUTFIT[1:])), 0)
+            outfit = (Garment("shirt", "tartan", (0, 0, 0)), *DEMO_OUTFIT[1:])
+            render(replace(SCENE, person=replace(SCENE.person, outfit=outfit)), 0)
 
 
 class TestEmpty:
@@ -155,6 +167,6 @@ class TestRoom:
 
 
 def test_standing_motions_render():
-    still = replace(SCENE, motion=Motion("crouch", duration=0.5), figure="woman")
+    still = replace(SCENE, person=Person("woman", Motion("crouch", duration=0.5)))
     images, masks = render(still, 8)
     assert all(mask.sum() > 100 for mask in masks)

@@ -24,7 +24,9 @@ def written(tmp_path_factory):
     """A scene of four frames in two small cameras, and its folder."""
     scene = demo_scene(1)
     scene = replace(
-        scene, rig=Rig(tuple(c.scaled(0.25) for c in scene.rig.cameras[:2])), motion=Motion(duration=4 / 30)
+        scene,
+        rig=Rig(tuple(c.scaled(0.25) for c in scene.rig.cameras[:2])),
+        person=replace(scene.person, motion=Motion(duration=4 / 30)),
     )
     folder = tmp_path_factory.mktemp("scene")
     seen: list[tuple[int, int]] = []
@@ -82,4 +84,4 @@ def test_measures(written):
     lengths = tomllib.loads((folder / "measures.toml").read_text())
     assert lengths == pytest.approx(measures(scene), abs=1e-4)
     assert lengths["left_thigh"] == lengths["right_thigh"] and 0.2 < lengths["left_forearm"] < 0.3
-    assert 0 < stature(scene) - {"man": 1.79, "woman": 1.67}[scene.figure] < 0.03  # hair and soles
+    assert 0 < stature(scene) - {"man": 1.79, "woman": 1.67}[scene.person.figure] < 0.03  # hair and soles

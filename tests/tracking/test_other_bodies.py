@@ -17,7 +17,7 @@ from muybridge.body import Body, named_body
 from muybridge.cameras.model import Camera, Rig
 from muybridge.likelihood.observation import ImageLikelihood
 from muybridge.plotting.outlines import segment_outlines
-from muybridge.synthetic.scene import looking_at
+from muybridge.synthetic.rigs import looking_at
 from muybridge.tracking.start import automatic_start
 from muybridge.tracking.tracker import Tracker
 

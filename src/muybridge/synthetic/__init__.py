@@ -1,10 +1,11 @@
 """Scenes whose truth is known: a skinned person in a room, rendered here, with exact joints.
 
 ================  =========================================================================================
-`scene`           `Scene`, `demo_scene(seed)`, `render(scene, frame)`, `empty(scene, n)`, `truth(scene)`
+`scene`           `Scene`, `Person`, `demo_scene(seed)`, `render(scene, frame)`, `empty(scene, n)`, `truth(scene)`
 `write`           `write_scene(scene, folder)`: videos, empty room, masks, calibration, truth, measures, job
 `skinning`        `load_figure(name)`: the baked people; bones, linear blend skinning, the 15 joints
 `motion`          `Motion`, `perform(figure, motion)`: walk, wave, crouch
+`rigs`            `ring`, `looking_at`: where cameras stand
 `rasterise`       `draw(camera, mesh ...)`: z-buffer, solid textures, Lambert shading
 `room`            `Room`, `picture(room, camera)`: floor, walls, their light
 `shadow`          the person's shadow on the floor

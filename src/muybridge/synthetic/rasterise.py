@@ -31,6 +31,27 @@ class Cloth:
 
 
 @dataclass(frozen=True, eq=False)
+class Mesh:
+    """A figure in one posture, ready to be drawn.
+
+    Parameters
+    ----------
+    vertices, normals : (V, 3) float64, metres and unit vectors, world
+    faces : (F, 3) int32
+    material : (V, 3) float64, metres: places in the cloth
+    face_labels : (F,) int32: which cloth each face wears
+    face_parts : (F,) int32: which part of the body each face belongs to
+    """
+
+    vertices: np.ndarray
+    normals: np.ndarray
+    faces: np.ndarray
+    material: np.ndarray
+    face_labels: np.ndarray
+    face_parts: np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
 class Layer:
     """A mesh drawn alone, in a window of the picture.
 
@@ -40,21 +61,19 @@ class Layer:
     coverage : (h, w) float32 in 0-1: share of each pixel that the mesh covers
     colours : (h, w, 3) float32, BGR, premultiplied with coverage
     depth : (h, w) float32, metres: camera z of the nearest sample; infinity where there is none
+    part : (h, w) int16: which part of the body the pixel's first sample sees; -1 where there is none
     """
 
     window: tuple[int, int, int, int]
     coverage: np.ndarray
     colours: np.ndarray
     depth: np.ndarray
+    part: np.ndarray
 
 
 def draw(
     camera: Camera,
-    vertices: np.ndarray,
-    faces: np.ndarray,
-    normals: np.ndarray,
-    material: np.ndarray,
-    face_labels: np.ndarray,
+    mesh: Mesh,
     cloth: Cloth,
     *,
     light: np.ndarray = LIGHT,
@@ -65,11 +84,9 @@ def draw(
 
     Parameters
     ----------
-    vertices, normals, material : (V, 3) float64; metres world, unit world, metres in the cloth
-    faces, face_labels : (F, 3), (F,) int32
     light : (3,) towards the lamp, world; ambient : share of light that has no direction
     """
-    place = camera.world_to_camera(vertices)
+    place = camera.world_to_camera(mesh.vertices)
     pixels = camera.camera_to_pixel(place)
     window = _window(pixels, camera.size)
     left, top, right, bottom = window
@@ -77,16 +94,16 @@ def draw(
     fine = (pixels - (left, top) + 0.5) * samples - 0.5
     buffers = empty_buffers(width * samples, height * samples)
     inverse_depth = np.where(np.isfinite(pixels[:, 0]), 1.0 / np.where(place[:, 2] > 0, place[:, 2], -1.0), -1.0)
-    fill_triangles(fine, inverse_depth, faces, *buffers)
+    fill_triangles(fine, inverse_depth, mesh.faces, *buffers)
     colours = np.zeros((height * samples, width * samples, 3), dtype=np.float32)
     light = np.asarray(light, dtype=np.float64) / np.linalg.norm(light)
     shade_faces(
-        faces,
+        mesh.faces,
         buffers[1],
         buffers[2],
-        normals,
-        material,
-        face_labels,
+        mesh.normals,
+        mesh.material,
+        mesh.face_labels,
         cloth.tiles,
         cloth.tile_size,
         light,
@@ -101,7 +118,13 @@ def draw(
         _blocks((buffers[1] >= 0).astype(np.float32), samples).mean(axis=(1, 3)),
         _blocks(colours, samples).mean(axis=(1, 3)),
         depth,
+        _parts(buffers[1][::samples, ::samples], mesh.face_parts),
     )
+
+
+def _parts(faces: np.ndarray, face_parts: np.ndarray) -> np.ndarray:
+    """(h, w) int16: the part that each pixel's face (h, w) belongs to."""
+    return np.where(faces >= 0, face_parts[faces], -1).astype(np.int16)
 
 
 def coverage_of(points: np.ndarray, faces: np.ndarray, width: int, height: int) -> np.ndarray:

@@ -13,10 +13,11 @@ from functools import lru_cache
 
 import numpy as np
 
-from muybridge.cameras.model import Camera, Rig
+from muybridge.cameras.model import Rig
 from muybridge.errors import InputError
 from muybridge.synthetic.motion import Motion, Track, perform
 from muybridge.synthetic.rasterise import LIGHT, Cloth, Layer, draw
+from muybridge.synthetic.rigs import ring
 from muybridge.synthetic.room import Room, picture
 from muybridge.synthetic.shadow import floor_shade
 from muybridge.synthetic.skinning import Figure, load_figure
@@ -67,24 +68,37 @@ OUTFITS = (
 
 
 @dataclass(frozen=True)
+class Person:
+    """Who does what, and what is worn.
+
+    Parameters
+    ----------
+    figure : a baked person, "man" or "woman"
+    motion : what is done
+    outfit : garments; together with BARE they cover every label of the figure
+    """
+
+    figure: str = "man"
+    motion: Motion = field(default_factory=Motion)
+    outfit: tuple[Garment, ...] = DEMO_OUTFIT
+
+
+@dataclass(frozen=True)
 class Scene:
     """Everything a scene is made from.
 
     Parameters
     ----------
-    figure : a baked person, "man" or "woman"
-    motion, rig, room : what is done, who looks on, and where
-    outfit : garments; together with BARE they cover every label of the figure
+    rig, room : who looks on, and where
+    person : who is to be tracked
     noise : standard deviation of a grey value of 128, in grey values; it grows with the square root of the light
     drift : relative change of the light, up and down, over the clip
     shadow : 0 (none) to 1 (black): how dark the cast shadow is
     """
 
     rig: Rig
-    figure: str = "man"
-    motion: Motion = field(default_factory=Motion)
+    person: Person = field(default_factory=Person)
     room: Room = field(default_factory=Room)
-    outfit: tuple[Garment, ...] = DEMO_OUTFIT
     noise: float = 3.0
     drift: float = 0.015
     shadow: float = 0.45
@@ -93,7 +107,7 @@ class Scene:
     @property
     def frame_count(self) -> int:
         """How many frames the clip has."""
-        return len(self.motion.times)
+        return len(self.person.motion.times)
 
 
 @dataclass(frozen=True, eq=False)
@@ -130,7 +144,7 @@ def demo_scene(seed: int = 0, *, duration: float = 3.0, rate: float = 30.0) -> S
         rig = ring(rng, 3)
         if _whole(rig, perform(figure, motion).joints):
             room = Room(floor=str(rng.choice(["planks", "planks", "tiles"])), seed=seed)
-            return Scene(rig, figure=name, motion=motion, room=room, outfit=outfit, seed=seed)
+            return Scene(rig, Person(name, motion, outfit), room, seed=seed)
     raise InputError("demo scene", expected="a clip short enough to stay in view", got=f"{duration:g} s")
 
 
@@ -141,40 +155,6 @@ def _whole(rig: Rig, joints: np.ndarray, margin: float = 24.0) -> bool:
         if not ((pixels > margin) & (pixels < np.array(camera.size) - margin)).all():
             return False
     return True
-
-
-def ring(rng: np.random.Generator, count: int, *, radius: float = 3.9, size: tuple[int, int] = (640, 480)) -> Rig:
-    """Cameras on a circle around the origin, at the height of eyes or above, all looking at the middle of a person."""
-    cameras = []
-    for index in range(count):
-        azimuth = 2 * np.pi * index / count + rng.uniform(-0.25, 0.25)
-        distance = radius * rng.uniform(0.95, 1.05)
-        place = np.array([distance * np.cos(azimuth), distance * np.sin(azimuth), rng.uniform(1.5, 2.3)])
-        lens = np.array([-0.12, 0.06, 0.0, 0.0, 0.0]) * rng.uniform(0.7, 1.1) + (0, 0, *rng.normal(0, 3e-4, 2), 0)
-        aim = np.array([0.0, 0.0, 0.88]) + rng.uniform(-0.05, 0.05, 3)
-        focal = rng.uniform(0.88, 0.94) * size[0]
-        cameras.append(looking_at(f"cam{index + 1}", place, aim, focal=focal, size=size, distortion=lens))
-    return Rig(tuple(cameras))
-
-
-def looking_at(
-    name: str,
-    place: np.ndarray,
-    target: np.ndarray,
-    *,
-    focal: float,
-    size: tuple[int, int] = (640, 480),
-    distortion: np.ndarray | None = None,
-) -> Camera:
-    """An upright camera at `place` with `target` in the middle of its picture; metres, pixels."""
-    forward = np.asarray(target, dtype=np.float64) - place
-    forward /= np.linalg.norm(forward)
-    right = np.cross(forward, (0.0, 0.0, 1.0))
-    right /= np.linalg.norm(right)
-    rotation = np.stack([right, np.cross(forward, right), forward])
-    matrix = np.array([[focal, 0, (size[0] - 1) / 2], [0, focal, (size[1] - 1) / 2], [0, 0, 1]])
-    lens = np.zeros(5) if distortion is None else distortion
-    return Camera(name, size, matrix, lens, rotation, -rotation @ np.asarray(place, dtype=np.float64))
 
 
 def truth(scene: Scene) -> Track:
@@ -199,12 +179,11 @@ def render(scene: Scene, frame: int) -> tuple[tuple[np.ndarray, ...], tuple[np.n
         raise InputError("frame", expected=f"0 to {scene.frame_count - 1}", got=str(frame))
     made = stage(scene)
     figure, track = made.figure, made.track
-    vertices = figure.skin(track.rotations[frame], track.places[frame])
-    normals = figure.normals(vertices)
-    shade = floor_shade(vertices, figure.faces, LIGHT, scene.shadow)
+    mesh = figure.mesh(track.rotations[frame], track.places[frame])
+    shade = floor_shade(mesh.vertices, mesh.faces, LIGHT, scene.shadow)
     images, masks = [], []
     for index, camera in enumerate(scene.rig):
-        layer = draw(camera, vertices, figure.faces, normals, figure.material, figure.face_labels, made.cloth)
+        layer = draw(camera, mesh, made.cloth)
         colours = shade.applied(made.plates[index], made.floors[index])
         images.append(_exposed(scene, _over(colours, layer), index, frame))
         masks.append(_mask(layer, camera.size))
@@ -221,15 +200,17 @@ def empty(scene: Scene, count: int = 1) -> Iterator[tuple[np.ndarray, ...]]:
 @lru_cache(maxsize=4)
 def stage(scene: Scene) -> Stage:
     """Make everything that does not change from frame to frame; the last few scenes are kept."""
-    figure = load_figure(scene.figure)
+    figure = load_figure(scene.person.figure)
     rng = np.random.default_rng([scene.seed, 1])
-    garments = {item.label: (item.pattern, item.colour, item.second, item.tile) for item in (*BARE, *scene.outfit)}
+    garments = {
+        item.label: (item.pattern, item.colour, item.second, item.tile) for item in (*BARE, *scene.person.outfit)
+    }
     cloth = clothing(rng, garments, figure.label_names)
     rooms = [picture(scene.room, camera) for camera in scene.rig]
     return Stage(
         figure,
         cloth,
-        perform(figure, scene.motion),
+        perform(figure, scene.person.motion),
         tuple(plate for plate, _ in rooms),
         tuple(floor for _, floor in rooms),
     )
@@ -255,8 +236,8 @@ def _mask(layer: Layer, size: tuple[int, int]) -> np.ndarray:
 def _exposed(scene: Scene, colours: np.ndarray, camera: int, frame: int) -> np.ndarray:
     """(H, W, 3) uint8: the light's drift, then a sensor's noise: its variance grows with the light, plus a floor."""
     rng = np.random.default_rng([scene.seed, camera, frame - EMPTY_FRAMES])
-    time = max(frame, 0) / scene.motion.rate
-    gain = 1.0 + scene.drift * np.sin(2 * np.pi * time / max(scene.motion.duration, 1e-9))
+    time = max(frame, 0) / scene.person.motion.rate
+    gain = 1.0 + scene.drift * np.sin(2 * np.pi * time / max(scene.person.motion.duration, 1e-9))
     light = colours * np.float32(gain)
     deviation = np.sqrt(light * np.float32(0.75 / 128) + np.float32(0.25)) * np.float32(scene.noise)
     noise = rng.standard_normal(light.shape, dtype=np.float32)

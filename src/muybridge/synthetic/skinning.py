@@ -20,6 +20,7 @@ import numpy as np
 from muybridge._kernels.rasterise import blend_skin, vertex_normals
 from muybridge.errors import InputError
 from muybridge.evaluation.names import JOINTS
+from muybridge.synthetic.rasterise import Mesh
 
 #: The bone at whose head each joint lies; pelvis, thorax and head_top are made from several points (`Figure.joints`).
 JOINT_BONES = {
@@ -129,6 +130,17 @@ class Figure:
         out = np.empty_like(vertices)
         vertex_normals(vertices, self.faces, out)
         return out
+
+    @cached_property
+    def face_parts(self) -> np.ndarray:
+        """(F,) int32: the bone that moves most of each face."""
+        a, b, c = self.bone_indices[self.faces, 0].T
+        return np.where(b == c, b, a).astype(np.int32)
+
+    def mesh(self, world: np.ndarray, places: np.ndarray) -> Mesh:
+        """The figure in the posture that `frames` gave, ready to be drawn; its parts are bones."""
+        vertices = self.skin(world, places)
+        return Mesh(vertices, self.normals(vertices), self.faces, self.material, self.face_labels, self.face_parts)
 
     def carried(self, point: np.ndarray, bone: int, world: np.ndarray, places: np.ndarray) -> np.ndarray:
         """(3,) metres, world: where a rest-posture point that is fixed to a bone has gone."""

@@ -106,7 +106,7 @@ def job_of(scene: Scene, folder: Path) -> jobs.Job:
 
 
 def _write_videos(scene: Scene, folder: Path, progress: Callable[[int, int], None] | None) -> None:
-    rate = scene.motion.rate
+    rate = scene.person.motion.rate
     with ExitStack() as open_files:
 
         def writers(suffix: str) -> list[VideoWriter]:
