@@ -34,7 +34,7 @@ _SEGMENT_KEYS = (
     *_TEXT_KEYS,
 )
 _SHAPE_KEYS = ("base_m", "tip_m", "radii_m", "scale", "side", "ends")
-_ROTATION_KEYS = ("name", "axis", "limits_deg", "limits_rad")
+_ROTATION_KEYS = ("name", "axis", "limits_deg", "limits_rad", "usual_deg", "usual_rad")
 _JOINT_KEYS = ("segment", "at", "offset_m")
 _TURNED_AXES = {"x": (1, 2), "y": (2, 0), "z": (0, 1)}
 
@@ -129,7 +129,12 @@ def _rotation(entry: Mapping[str, Any]) -> Rotation:
             limits = tuple(np.radians(_numbers(f"limits_deg of {name!r}", entry["limits_deg"], 2, endless=True)))
         elif "limits_rad" in entry:
             limits = _numbers(f"limits_rad of {name!r}", entry["limits_rad"], 2, endless=True)  # type: ignore[assignment]
-        return Rotation(name, axis, float(limits[0]), float(limits[1]))
+        usual = (0.0, np.inf)
+        if "usual_deg" in entry:
+            usual = tuple(np.radians(_numbers(f"usual_deg of {name!r}", entry["usual_deg"], 2)))
+        elif "usual_rad" in entry:
+            usual = _numbers(f"usual_rad of {name!r}", entry["usual_rad"], 2)  # type: ignore[assignment]
+        return Rotation(name, axis, *map(float, (*limits, *usual)))
 
 
 def _orientation(entry: Mapping[str, Any]) -> Matrix:

@@ -80,6 +80,12 @@ class Body:
         return np.array([np.inf] * 3 + [r.upper for s in self.segments for r in s.rotations])
 
     @cached_property
+    def usual(self) -> np.ndarray:
+        """(2, D) float64: where each angle mostly is, and its deviation; infinite where nothing is known."""
+        turns = [(r.usual, r.usual_sd) for s in self.segments for r in s.rotations]
+        return np.array([(0.0, np.inf)] * 3 + turns).T
+
+    @cached_property
     def blocks(self) -> dict[str, np.ndarray]:
         """Degrees of freedom by limb block (root, left_arm ...), as index arrays."""
         owner = ["root"] * 3 + [s.block for s in self.segments for _ in s.rotations]

@@ -26,6 +26,8 @@ class Rotation:
     axis: str
     lower: float = -np.inf  # radians
     upper: float = np.inf  # radians
+    usual: float = 0.0  # radians; where the angle mostly is
+    usual_sd: float = np.inf  # radians; how far from there it mostly is; infinite: nothing is known
 
     def __post_init__(self) -> None:
         what = f"rotation {self.name!r}"
@@ -34,6 +36,9 @@ class Rotation:
         if not self.lower <= self.upper:
             degrees = f"[{np.degrees(self.lower):g}, {np.degrees(self.upper):g}] degrees"
             raise InputError(f"{what}: limits", expected="lower below upper", got=degrees, remedy="swap them")
+        if not (np.isfinite(self.usual) and self.usual_sd > 0):
+            got = f"[{np.degrees(self.usual):g}, {np.degrees(self.usual_sd):g}] degrees"
+            raise InputError(f"{what}: usual", expected="an angle and a positive deviation", got=got)
 
 
 @dataclass(frozen=True)

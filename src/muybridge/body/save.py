@@ -71,7 +71,8 @@ def _rotation_text(rotation: Rotation) -> str:
     limits = ""
     if np.isfinite(rotation.lower) or np.isfinite(rotation.upper):
         limits = f", limits_rad = {_listed((rotation.lower, rotation.upper))}"
-    return f"{{name = {_quoted(rotation.name)}, axis = {_quoted(rotation.axis)}{limits}}}"
+    usual = f", usual_rad = {_listed((rotation.usual, rotation.usual_sd))}" if np.isfinite(rotation.usual_sd) else ""
+    return f"{{name = {_quoted(rotation.name)}, axis = {_quoted(rotation.axis)}{limits}{usual}}}"
 
 
 def _quoted(text: str) -> str:

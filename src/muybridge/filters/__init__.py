@@ -26,7 +26,7 @@ from typing import Any
 
 from muybridge.errors import InputError
 from muybridge.filters import annealed, condensation, demc, guided, tempered
-from muybridge.filters.dynamics import ConstantVelocity, Dynamics, GaussianWalk
+from muybridge.filters.dynamics import ConstantVelocity, Dynamics, GaussianWalk, NearlyConstantVelocity
 from muybridge.filters.particles import Weights, covariance, maximum_estimate, mean_estimate, standard_deviation
 from muybridge.filters.resampling import RESAMPLING, resample
 from muybridge.filters.state import CommonConfig, Info, Likelihood, State, state_from_arrays, state_to_arrays
@@ -86,6 +86,7 @@ __all__ = [
     "Info",
     "Likelihood",
     "Method",
+    "NearlyConstantVelocity",
     "State",
     "Weights",
     "covariance",

@@ -81,7 +81,8 @@ PRINTED = Config(estimate="mean")  # the expectation: Deutscher et al. (2000), s
 # Measured on rendered scenes seen by four cameras, see docs/benchmarks.md, "The papers' filters": three rounds of limb
 # blocks beat one or two, which beat five layers of the whole body; shrinking by .71 beats .5; survival between .05 and
 # .2 makes little difference. 277 x 18 = 4986 evaluations.
-WORKING = Config(particles=277, layers=18, survival=0.1, shrink=0.71, contraction=0.8, by_limb=True,
+# The sharpness is about what the survival rate finds; only what is usual is weighed by it.
+WORKING = Config(particles=277, layers=18, survival=0.1, shrink=0.71, contraction=0.8, by_limb=True, sharpness=200.0,
                  estimate="mean", resampling="systematic")  # fmt: skip
 
 init = PlainInit(WORKING)  # particles around a known pose
@@ -91,7 +92,7 @@ def step(
     rng: np.random.Generator, state: State, likelihood: Likelihood, dynamics: Dynamics, config: Config = WORKING
 ) -> tuple[State, Info]:
     """One frame, an annealing run of M layers; Deutscher et al. (2000), section 3."""
-    counted = CountingLikelihood(likelihood)
+    counted = CountingLikelihood(likelihood, dynamics, config.sharpness)
     particles, weights = state.particles, Weights(state.log_weights)
     velocity: FloatArray | None = state.velocity
     layers = Layers()

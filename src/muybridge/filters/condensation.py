@@ -62,7 +62,7 @@ def step(
     rng: np.random.Generator, state: State, likelihood: Likelihood, dynamics: Dynamics, config: Config = WORKING
 ) -> tuple[State, Info]:
     """One frame, section 3.4, lines 1 to 4."""
-    counted = CountingLikelihood(likelihood)
+    counted = CountingLikelihood(likelihood, dynamics, config.sharpness)
     selected = resample(rng, Weights(state.log_weights), config.particles, config.resampling)  # 1, (3.26)-(3.27)
     particles = dynamics.sample(rng, state.particles[selected], state.velocity)  # 2, (3.20), (3.22)
     population = Population(particles, counted.log_prob(particles))

@@ -95,7 +95,7 @@ def step(
     rng: np.random.Generator, state: State, likelihood: Likelihood, dynamics: Dynamics, config: Config = WORKING
 ) -> tuple[State, Info]:
     """One frame, section 6.4, steps 1 to 3."""
-    counted = CountingLikelihood(likelihood)
+    counted = CountingLikelihood(likelihood, dynamics, config.sharpness)
     target = Target(counted, dynamics.lower, dynamics.upper, exponent=config.sharpness)
     selected = resample(rng, Weights(state.log_weights), config.particles, config.resampling)  # 1
     predicted = dynamics.sample(rng, state.particles[selected], state.velocity, config.dynamics_noise)  # 2, (6.16)

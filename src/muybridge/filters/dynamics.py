@@ -7,7 +7,7 @@ pose outside is ever proposed and none piles up on the limit itself. Symbols: V 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Protocol
 
 import numpy as np
@@ -15,6 +15,52 @@ from numpy.typing import NDArray
 
 from muybridge.errors import InputError
 from muybridge.filters.particles import FloatArray
+
+STANDING = 1e-9  # state units; no component is known better, so that covariances can be inverted
+
+
+@dataclass(frozen=True, eq=False)
+class Belief:
+    """A normal density of place X and velocity V (per frame), as a Kalman filter keeps it.
+
+    Parameters
+    ----------
+    mean, velocity : (D,) float64
+    covariance, cross, velocity_covariance : (D, D) float64
+        Of X; of X (rows) with V; of V, NaN where nothing is known of it yet.
+    velocity_gain : (D, D) float64
+        How the velocity follows a place that turns out to be other than expected.
+    """
+
+    mean: FloatArray
+    covariance: FloatArray
+    velocity: FloatArray
+    cross: FloatArray
+    velocity_covariance: FloatArray
+    velocity_gain: FloatArray
+
+    @classmethod
+    def at_rest(cls, mean: FloatArray, sd: FloatArray) -> Belief:
+        """A place (D,) known to sd (D,), and nothing about its velocity."""
+        none = np.zeros((mean.size, mean.size))
+        return cls(mean, np.diag(np.square(sd)), np.zeros_like(mean), none, np.full_like(none, np.nan), none)
+
+    def corrected(self, mean: FloatArray, covariance: FloatArray) -> Belief:
+        """Once the place is known to be N(mean, covariance): the velocity too, as far as the two hang together."""
+        gain = self.velocity_gain
+        velocity = self.velocity + gain @ (mean - self.mean)
+        velocity_covariance = self.velocity_covariance - gain @ (self.covariance - covariance) @ gain.T
+        return replace(self, mean=mean, covariance=covariance, velocity=velocity, cross=covariance @ gain.T,
+                       velocity_covariance=velocity_covariance)  # fmt: skip
+
+    def freed(self, block: NDArray[np.intp], values: FloatArray, sd: float) -> Belief:
+        """The same with one block's components (B,) about `values`, wherever they were: a jump tells no velocity."""
+        mean, covariance, gain = self.mean.copy(), self.covariance.copy(), self.velocity_gain.copy()
+        mean[block] = values
+        covariance[block, :] = covariance[:, block] = 0.0
+        covariance[block, block] = sd**2
+        gain[block, :] = gain[:, block] = 0.0
+        return replace(self, mean=mean, covariance=covariance, velocity_gain=gain)
 
 
 class Dynamics(Protocol):
@@ -33,6 +79,24 @@ class Dynamics(Protocol):
     @property
     def upper(self) -> FloatArray:
         """Upper limits; inf where free."""
+        ...
+
+    @property
+    def usual(self) -> FloatArray:
+        """Where components mostly are, whatever came before."""
+        ...
+
+    @property
+    def usual_sd(self) -> FloatArray:
+        """How far from there they mostly are; inf where nothing is known."""
+        ...
+
+    def log_usual(self, particles: FloatArray) -> FloatArray:
+        """(N,) log density, up to a constant, of how usual each state (N, D) is, whatever came before."""
+        ...
+
+    def carry(self, belief: Belief) -> Belief:
+        """What is believed a frame later, before it is seen."""
         ...
 
     def sample(
@@ -64,11 +128,15 @@ class GaussianWalk:
     noise_sd : (D,) float64, state units per frame
     lower, upper : (D,) float64, state units
         Either may be infinite, for single components or (the default) for all.
+    usual, usual_sd : (D,) float64, state units
+        Where components mostly are, whatever came before, and how far from there; infinite (the default): anywhere.
     """
 
     noise_sd: FloatArray
     lower: FloatArray = None  # type: ignore[assignment]  # filled in below
     upper: FloatArray = None  # type: ignore[assignment]
+    usual: FloatArray = None  # type: ignore[assignment]
+    usual_sd: FloatArray = None  # type: ignore[assignment]
 
     def __post_init__(self) -> None:
         noise_sd = np.array(self.noise_sd, dtype=np.float64)
@@ -77,7 +145,14 @@ class GaussianWalk:
                 "dynamics noise_sd", expected="shape (D,), finite and not negative", got=str(self.noise_sd)
             )
         lower, upper = checked_limits(self.lower, self.upper, noise_sd.size)
-        for name, value in (("noise_sd", noise_sd), ("lower", lower), ("upper", upper)):
+        usual = np.zeros_like(noise_sd) if self.usual is None else np.array(self.usual, dtype=np.float64)
+        usual_sd = (
+            np.full_like(noise_sd, np.inf) if self.usual_sd is None else np.array(self.usual_sd, dtype=np.float64)
+        )
+        if not (usual.shape == usual_sd.shape == noise_sd.shape and (usual_sd > 0).all()):
+            raise InputError("dynamics usual_sd", expected="shape (D,), above 0", got=str(self.usual_sd))
+        columns = ("noise_sd", noise_sd), ("lower", lower), ("upper", upper), ("usual", usual), ("usual_sd", usual_sd)
+        for name, value in columns:
             value.flags.writeable = False
             object.__setattr__(self, name, value)
 
@@ -91,6 +166,22 @@ class GaussianWalk:
         """See `Dynamics.sample`. Returns (N, D) float64 within the limits."""
         noise = rng.standard_normal(particles.shape) * (self.noise_sd * scale)
         return reflect(particles + self._drift(velocity) + noise, self.lower, self.upper)
+
+    def log_usual(self, particles: FloatArray) -> FloatArray:
+        """See `Dynamics.log_usual`: independent normals."""
+        away = (particles - self.usual) / self.usual_sd
+        log_density: FloatArray = -0.5 * np.einsum("nd,nd->n", away, away)
+        return log_density
+
+    def carry(self, belief: Belief) -> Belief:
+        """The place as it was, less surely; no velocity is believed in."""
+        none = np.zeros_like(belief.covariance)
+        return replace(belief, covariance=belief.covariance + self._noise, velocity=np.zeros_like(belief.mean),
+                       cross=none, velocity_covariance=none, velocity_gain=none)  # fmt: skip
+
+    @property
+    def _noise(self) -> FloatArray:
+        return np.diag(np.maximum(self.noise_sd, STANDING) ** 2)
 
     def _drift(self, velocity: FloatArray | None) -> FloatArray | float:
         return 0.0
@@ -114,8 +205,59 @@ class ConstantVelocity(GaussianWalk):
         if not 0.0 <= self.gain <= 1.0:
             raise InputError("dynamics gain", expected="between 0 and 1", got=str(self.gain))
 
+    def carry(self, belief: Belief) -> Belief:
+        """The place moved on by the last step; the velocity follows it fully: it becomes the new step, (6.19)."""
+        moved = reflect((belief.mean + self._drift(belief.velocity))[None], self.lower, self.upper)[0]
+        carried = super().carry(belief)
+        return replace(carried, mean=moved, velocity=moved - belief.mean, velocity_gain=np.eye(moved.size))
+
     def _drift(self, velocity: FloatArray | None) -> FloatArray | float:
         return 0.0 if velocity is None else self.gain * velocity
+
+
+@dataclass(frozen=True, eq=False)
+class NearlyConstantVelocity(ConstantVelocity):
+    """Place and velocity, moved by accelerations that are white noise: Bar-Shalom, Li and Kirubarajan (2001), 6.3.2.
+
+    The velocity is estimated beside the place, not taken as the difference of two noisy places, so that it may be
+    repeated in full. Particles that are drawn move as with `ConstantVelocity`.
+
+    Parameters
+    ----------
+    noise_sd : (D,) float64
+        Here of the velocity, per frame, when nothing is known of it yet.
+    acceleration_sd : (D,) float64, state units per frame squared
+    gain : float
+        Share of the velocity that lasts from a frame to the next.
+    """
+
+    acceleration_sd: FloatArray = None  # type: ignore[assignment]
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        acceleration_sd = np.array(self.acceleration_sd, dtype=np.float64)
+        if acceleration_sd.shape != self.noise_sd.shape or not (
+            np.isfinite(acceleration_sd).all() and (acceleration_sd >= 0).all()
+        ):
+            raise InputError(
+                "dynamics acceleration_sd", expected="shape (D,), finite, not negative", got=str(acceleration_sd)
+            )
+        acceleration_sd.flags.writeable = False
+        object.__setattr__(self, "acceleration_sd", acceleration_sd)
+
+    def carry(self, belief: Belief) -> Belief:
+        """X + V, and V: F P F' + Q with F = [[1, g], [0, g]] and Q = [[1/4, 1/2], [1/2, 1]] q^2."""
+        gain, q = self.gain, np.diag(self.acceleration_sd**2)
+        known = not np.isnan(belief.velocity_covariance).any()
+        speeds = belief.velocity_covariance if known else self._noise
+        cross = belief.cross
+        covariance = (
+            belief.covariance + gain * (cross + cross.T) + gain**2 * speeds + q / 4 + STANDING**2 * np.eye(len(q))
+        )
+        moved_cross = gain * cross + gain**2 * speeds + q / 2
+        mean = reflect((belief.mean + gain * belief.velocity)[None], self.lower, self.upper)[0]
+        return Belief(mean, covariance, gain * belief.velocity, moved_cross, gain**2 * speeds + q,
+                      np.linalg.solve(covariance, moved_cross).T)  # fmt: skip
 
 
 def checked_limits(lower: FloatArray | None, upper: FloatArray | None, size: int) -> tuple[FloatArray, FloatArray]:

@@ -46,7 +46,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from muybridge.errors import InputError
-from muybridge.filters.dynamics import Dynamics, reflect
+from muybridge.filters.dynamics import Belief, Dynamics, reflect
 from muybridge.filters.particles import FloatArray, Weights
 from muybridge.filters.state import (
     CommonConfig,
@@ -110,7 +110,8 @@ class Config(CommonConfig):
     sharpness: float = 200.0  # K, where the likelihood weighs
     estimate: Literal["mean", "maximum"] = "mean"
     spreads: tuple[float, ...] = (0.2, 0.13, 0.085, 0.06, 0.045, 0.035, 0.03, 0.025)  # metres, one a step, falling
-    dependence: float = 60.0  # kappa; 95 % regions then hold 82 to 95 % on demo scenes, see docs/benchmarks.md
+    dependence: float = 5.0  # kappa
+    inflation: float = 3.0  # particles are drawn so much wider than the filter itself believes
     blocks: tuple[tuple[int, ...], ...] = ()  # components that are drawn anew together; empty: never
     redraws: int = 100  # likelihood evaluations spent on each
     tries: int = 4  # of a block's best redraws, so many are climbed from
@@ -128,6 +129,7 @@ class Config(CommonConfig):
         require("redraws", self.redraws >= 0, "0 or more", self.redraws)
         require("tries", self.tries >= 1, "1 or more", self.tries)
         require("dependence", self.dependence > 0, "above 0", self.dependence)
+        require("inflation", self.inflation > 0, "above 0", self.inflation)
         require(
             "weighting",
             self.weighting in ("laplace", "likelihood", "importance"),
@@ -138,9 +140,17 @@ class Config(CommonConfig):
 
 @dataclass(frozen=True, eq=False)
 class State(CommonState):
-    """With the posterior's covariance (D, D), which the next frame's prediction starts from."""
+    """With what the next frame's prediction starts from, see `dynamics.Belief`: all (D, D), state units."""
 
     covariance: FloatArray
+    cross: FloatArray
+    velocity_covariance: FloatArray
+
+    @property
+    def belief(self) -> Belief:
+        """Place and velocity as they are known."""
+        none = np.zeros_like(self.covariance)
+        return Belief(self.estimate, self.covariance, self.velocity, self.cross, self.velocity_covariance, none)
 
 
 PRINTED = Config()  # ours: there is no paper's setting to keep
@@ -157,7 +167,9 @@ def init(
 ) -> State:
     """Particles around a known pose. mean, sd, lower, upper : (D,) float64, the state's units."""
     state = initial_state(rng, mean, sd, config.particles, lower, upper)
-    return State(**vars(state), covariance=np.diag(np.square(np.asarray(sd, dtype=np.float64))))
+    belief = Belief.at_rest(state.estimate, np.asarray(sd, dtype=np.float64))
+    return State(**vars(state), covariance=belief.covariance, cross=belief.cross,
+                 velocity_covariance=belief.velocity_covariance)  # fmt: skip
 
 
 def step(
@@ -166,18 +178,16 @@ def step(
     """One frame: predict, climb, draw, weigh."""
     if not hasattr(likelihood, "normal_equations"):
         raise InputError("guided filter", expected="a likelihood with normal_equations", got=type(likelihood).__name__)
-    counted = CountingLikelihood(likelihood)
-    prediction = dynamics.sample(rng, state.estimate[None], state.velocity, 0.0)[0]
-    moved = state.covariance + np.diag(np.maximum(dynamics.noise_sd, 1e-9) ** 2)
-    prior = _Prior(prediction, moved, dynamics)
-    peak = _climb_all(prior, counted, likelihood, config.spreads)
+    counted = CountingLikelihood(likelihood, dynamics, config.sharpness)
+    prior = _Prior(dynamics.carry(state.belief), dynamics)
+    peak = _climb_all(prior, counted, likelihood, config)
     for block in config.blocks if config.redraws else ():
         peak = _redraw(rng, np.array(block), peak, counted, likelihood, config)
     mode = peak.pose
-    precision = peak.seen.curvature / (config.dependence * peak.seen.noise) + peak.prior.precision
+    precision = peak.seen.curvature / config.dependence + peak.prior.precision
     standard = rng.standard_normal((config.particles, mode.size))
     standard[0] = 0.0  # the mode itself is always among them
-    deviations = np.linalg.solve(np.linalg.cholesky(precision).T, standard.T).T
+    deviations = config.inflation * np.linalg.solve(np.linalg.cholesky(precision).T, standard.T).T
     particles = reflect(mode + deviations, dynamics.lower, dynamics.upper)
     log_likelihoods = counted.log_prob(particles)
     log_weights = _log_weights(particles, log_likelihoods, standard, peak.prior, config)
@@ -189,27 +199,29 @@ def step(
         return following, info
     if config.weighting == "laplace":  # the particles' mean is the mode plus noise
         following = replace(following, estimate=mode)
-    # A redrawn limb did not travel: what it jumped is no velocity.
-    velocity = following.estimate - state.estimate - (peak.prior.mean - prediction)
-    return replace(following, velocity=velocity, covariance=np.linalg.inv(precision).astype(np.float64)), info
+    belief = peak.prior.belief.corrected(following.estimate, np.linalg.inv(precision).astype(np.float64))
+    return replace(following, velocity=belief.velocity, covariance=belief.covariance, cross=belief.cross,
+                   velocity_covariance=belief.velocity_covariance), info  # fmt: skip
 
 
 class _Prior:
-    """What is known before the picture: mean (D,) and precision (D, D), no less than what the limits know."""
+    """What is known before the picture: what was carried over, times what is usual; no less than what the limits know.
 
-    def __init__(self, mean: FloatArray, covariance: FloatArray, dynamics: Dynamics) -> None:
-        self.mean, self.covariance, self.dynamics = mean, covariance, dynamics
+    mean : (D,); precision : (D, D)
+    """
+
+    def __init__(self, belief: Belief, dynamics: Dynamics) -> None:
+        self.belief, self.dynamics = belief, dynamics
         span = dynamics.upper - dynamics.lower
         known = np.where(np.isfinite(span), 12.0 / np.maximum(span, 1e-6) ** 2, 1e-9)  # of a uniform density
-        self.precision: FloatArray = np.linalg.inv(covariance) + np.diag(known)
+        usual = dynamics.usual_sd**-2.0
+        self.precision: FloatArray = np.linalg.inv(belief.covariance) + np.diag(known + usual)
+        towards = np.linalg.solve(self.precision, usual * (dynamics.usual - belief.mean))
+        self.mean: FloatArray = np.clip(belief.mean + towards, dynamics.lower, dynamics.upper)
 
     def freed(self, block: NDArray[np.intp], values: FloatArray, sd: float) -> _Prior:
         """The same with one block's components (B,) about `values`, whatever they were before."""
-        mean, covariance = self.mean.copy(), self.covariance.copy()
-        mean[block] = values
-        covariance[block, :] = covariance[:, block] = 0.0
-        covariance[block, block] = sd**2
-        return _Prior(mean, covariance, self.dynamics)
+        return _Prior(self.belief.freed(block, values, sd), self.dynamics)
 
 
 @dataclass(frozen=True, eq=False)
@@ -229,6 +241,7 @@ def climb(
     dynamics: Dynamics,
     spreads: Sequence[float],
     components: NDArray[np.intp] | None = None,
+    dependence: float = 1.0,
 ) -> tuple[FloatArray, Linearised]:
     """The posterior's mode (D,) near a pose (D,) of prior precision (D, D), and the curvature there.
 
@@ -240,17 +253,17 @@ def climb(
     mode = start.copy()
     for spread in spreads:
         seen = likelihood.normal_equations(mode, spread, components)
-        gradient = seen.gradient + precision @ (start - mode)[part]
-        change = np.linalg.solve(seen.curvature + precision, gradient)
+        gradient = seen.gradient / dependence + precision @ (start - mode)[part]
+        change = np.linalg.solve(seen.curvature / dependence + precision, gradient)
         change *= min(1.0, LARGEST_TURN / max(1e-12, float(np.abs(change).max())))
         mode[part] = np.clip(mode[part] + change, dynamics.lower[part], dynamics.upper[part])
     return mode, seen
 
 
-def _climb_all(
-    prior: _Prior, counted: CountingLikelihood, likelihood: GuidingLikelihood, spreads: Sequence[float]
-) -> _Peak:
-    pose, seen = climb(prior.mean, prior.precision, likelihood, prior.dynamics, spreads)
+def _climb_all(prior: _Prior, counted: CountingLikelihood, likelihood: GuidingLikelihood, config: Config) -> _Peak:
+    pose, seen = climb(
+        prior.mean, prior.precision, likelihood, prior.dynamics, config.spreads, dependence=config.dependence
+    )
     return _Peak(pose, float(counted.log_prob(pose[None])[0]), seen, prior)
 
 
@@ -271,11 +284,11 @@ def _redraw(
     best = np.argsort(-scores, kind="stable")[: config.tries]
     free = np.eye(peak.pose.size) / config.freedom**2
     for start in drawn[best[config.sharpness * (scores[best] - peak.log_likelihood) > -config.hopeful]]:
-        alone, _ = climb(start, free, likelihood, dynamics, config.spreads[::2], block)
+        alone, _ = climb(start, free, likelihood, dynamics, config.spreads[::2], block, config.dependence)
         needed = peak.log_likelihood + config.improvement * abs(peak.log_likelihood)
         if float(counted.log_prob(alone[None])[0]) <= needed:
             continue
-        other = _climb_all(peak.prior.freed(block, alone[block], config.freedom), counted, likelihood, config.spreads)
+        other = _climb_all(peak.prior.freed(block, alone[block], config.freedom), counted, likelihood, config)
         if other.log_likelihood > needed:
             peak = other
     return peak

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from muybridge.errors import InputError
-from muybridge.filters.dynamics import checked_limits, reflect
+from muybridge.filters.dynamics import Dynamics, checked_limits, reflect
 from muybridge.filters.particles import ESTIMATES, FloatArray, Weights, standard_deviation
 from muybridge.filters.resampling import RESAMPLING
 
@@ -102,10 +102,15 @@ class Info:
 
 
 class CountingLikelihood:
-    """A likelihood that counts what it is asked, and turns NaN and +inf into -inf."""
+    """A likelihood that counts what it is asked, and turns NaN and +inf into -inf.
 
-    def __init__(self, likelihood: Likelihood) -> None:
+    Where the dynamics knows which states are usual, that is part of it, so weighed that it counts once when the filter
+    has sharpened everything: log p(y | x) + log p(x) / K.
+    """
+
+    def __init__(self, likelihood: Likelihood, dynamics: Dynamics | None = None, sharpness: float = 1.0) -> None:
         self._likelihood = likelihood
+        self._dynamics, self._sharpness = dynamics, sharpness
         self.evaluations = 0
         self.invalid = 0
 
@@ -120,6 +125,8 @@ class CountingLikelihood:
         log_likelihoods[broken] = -np.inf
         self.evaluations += len(poses)
         self.invalid += int(broken.sum())
+        if self._dynamics is not None:
+            log_likelihoods += self._dynamics.log_usual(poses) / self._sharpness
         return log_likelihoods
 
 

@@ -85,7 +85,7 @@ def step(
     rng: np.random.Generator, state: State, likelihood: Likelihood, dynamics: Dynamics, config: Config = WORKING
 ) -> tuple[State, Info]:
     """One frame: predict, then for each layer rise, select, move."""
-    counted = CountingLikelihood(likelihood)
+    counted = CountingLikelihood(likelihood, dynamics, config.sharpness)
     selected = resample(rng, Weights(state.log_weights), config.particles, config.resampling)
     centres = dynamics.sample(rng, state.particles[selected], state.velocity, 0.0)
     predicted = dynamics.sample(rng, centres)

@@ -12,7 +12,7 @@ import numpy as np
 
 from muybridge.body.model import Body
 from muybridge.errors import InputError
-from muybridge.filters import ConstantVelocity
+from muybridge.filters import ConstantVelocity, NearlyConstantVelocity
 
 
 @dataclass(frozen=True)
@@ -23,6 +23,10 @@ class Motion:
     root_turn_speed: float = 3.75  # radians a second
     turn_speed: float = 3.75  # radians a second, of every other joint
     velocity_gain: float = 0.5  # share of the last step that the prediction repeats; 1 feeds noise back
+    root_acceleration: float = 0.0  # metres a second squared; where all three are 0 velocities are not estimated
+    root_turn_acceleration: float = 0.0  # radians a second squared
+    turn_acceleration: float = 0.0  # radians a second squared
+    usual_weight: float = 0.0  # how strongly the body's usual angles are preferred; 1: as it states them
 
     def __post_init__(self) -> None:
         for setting in fields(self):
@@ -32,11 +36,22 @@ class Motion:
 
     def dynamics(self, body: Body, interval: float) -> ConstantVelocity:
         """Constant velocity with noise in proportion to the time between frames, `interval` seconds."""
-        speeds = np.full(len(body.dof_names), self.turn_speed)
-        speeds[:3] = self.root_speed
-        root = [index for index, name in enumerate(body.dof_names) if index >= 3 and name.startswith("root_")]
-        speeds[root] = self.root_turn_speed
-        return ConstantVelocity(speeds * interval, body.lower, body.upper, self.velocity_gain)
+        speeds = _of_dofs(body, self.root_speed, self.root_turn_speed, self.turn_speed) * interval
+        changes = (
+            _of_dofs(body, self.root_acceleration, self.root_turn_acceleration, self.turn_acceleration) * interval**2
+        )
+        usual, usual_sd = body.usual
+        usual_sd = usual_sd / np.sqrt(self.usual_weight) if self.usual_weight > 0 else np.full_like(usual_sd, np.inf)
+        common = speeds, body.lower, body.upper, usual, usual_sd, self.velocity_gain
+        return NearlyConstantVelocity(*common, changes) if changes.any() else ConstantVelocity(*common)
+
+
+def _of_dofs(body: Body, place: float, root_turn: float, turn: float) -> np.ndarray:
+    """(D,) a value for the root's place, one for its turns, one for every other joint."""
+    values = np.full(len(body.dof_names), turn)
+    values[:3] = place
+    values[[index for index, name in enumerate(body.dof_names) if index >= 3 and name.startswith("root_")]] = root_turn
+    return values
 
 
 #: At 25 frames a second: 10 mm, 1.5 degrees for the root, 2.5 degrees for the limbs; see docs/benchmarks.md.
