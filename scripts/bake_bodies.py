@@ -40,6 +40,7 @@ PEOPLE = {
     "strong_man": (1.84, {"gender": 0.0, "age": 0.68, "muscle": 0.96, "weight": 0.60}, ("shorts", "short")),
     "child": (1.42, {"gender": 0.3, "age": 0.36, "muscle": 0.50, "weight": 0.45}, ("shorts", "short")),
 }
+SKIRT_SMOOTHING = 6  # times: a skirt follows both legs, not each half its own
 TEMPLATE = "man"  # in whose shape the hems are planes
 #: Pieces in the order of their vertices and faces; both shoes are one piece. Name -> the label that it wears.
 PIECES = {"body": "", "skirt": "trousers", "long": "hair", "bun": "hair", "shoes": "shoes"}
@@ -107,7 +108,7 @@ def make_topology(model: anny.Anny, shape: tuple[np.ndarray, np.ndarray, np.ndar
     template = Body(shape[0][body], dense[body], bones.names, bone_heads(model.bone_labels, shape[1], bones), {})
     weights = [
         dense[body],
-        dense[skirt],
+        clothes.smoothed(dense[skirt], skirt_faces, SKIRT_SMOOTHING),
         pieces.hair_weights(bones.names),
         pieces.bun_weights(bones.names),
         pieces.shoe_weights(template, "left"),

@@ -39,7 +39,7 @@ CUTS = {
     "short_sleeves": Cut(sleeve=0.97, leg=2.0),
     "long_sleeves": Cut(sleeve=1.93, leg=2.0),
     "shorts": Cut(sleeve=0.60, leg=0.80, hem=-0.08),
-    "skirt": Cut(sleeve=1.35, leg=0.75, skirt=True),
+    "skirt": Cut(sleeve=1.35, leg=0.95, skirt=True),
 }
 
 
@@ -110,7 +110,11 @@ def looseness(body: Body, cut: Cut, labels: np.ndarray, faces: np.ndarray) -> np
         leg = (on[f"{side}_thigh"] | on[f"{side}_shank"]) & (labels == TROUSERS)
         along = limb_share(points, body, side, ("thigh", "shank", "foot"), on)
         loose[leg] = smooth_step(along[leg] / cut.leg)
-    return smoothed(loose, faces, 2) * (labels != SKIN)
+    out = np.zeros_like(loose)
+    for worn in (labels == SHIRT, labels == TROUSERS):  # each garment by itself: it does not narrow towards its hem
+        share = smoothed(worn.astype(float), faces, 3)
+        out[worn] = smoothed(np.where(worn, loose, 0.0), faces, 3)[worn] / share[worn]
+    return out
 
 
 def smooth_step(x: np.ndarray) -> np.ndarray:
@@ -120,11 +124,11 @@ def smooth_step(x: np.ndarray) -> np.ndarray:
 
 
 def smoothed(values: np.ndarray, faces: np.ndarray, times: int) -> np.ndarray:
-    """Values (V,) replaced `times` times by the mean over the faces around each vertex."""
+    """Values (V,) or (V, K) replaced `times` times by the mean over the faces around each vertex."""
+    count = np.bincount(faces.ravel(), minlength=len(values)).reshape(-1, *[1] * (values.ndim - 1))
     for _ in range(times):
-        total, count = np.zeros(len(values)), np.zeros(len(values))
+        total = np.zeros_like(values)
         np.add.at(total, faces, values[faces].mean(axis=1)[:, None])
-        np.add.at(count, faces, 1.0)
         values = np.where(count > 0, total / np.maximum(count, 1), values)
     return values
 

@@ -14,6 +14,7 @@ from baking.rig import Body
 HAIR_GRID, BUN_GRID, SHOE_GRID = (18, 29), (10, 16), (18, 26)  # rows x columns of vertices
 HAIR_LENGTH = 0.17  # metres below the base of the neck
 SKIRT_GAP, HAIR_GAP, SHOE_WALL = 0.012, 0.016, 0.005  # metres between skin and piece
+SKIRT_FLARE = 0.055  # metres at the hem, to the front and back; less to the sides
 UPPER = 19  # columns of a shoe over the instep
 SOLE_EDGE, SOLE_RIM = 0.018, 0.003  # metres: height of a sole's edge, and how far it stands out
 
@@ -42,6 +43,7 @@ def fitted_skirt(body: Body, cloth: np.ndarray) -> np.ndarray:
         near = hips[tree.query(cloth, k=4)[1]]
         beyond = np.einsum("nki,ni->nk", near[..., :2] - cloth[:, None, :2], away).max(axis=1)
         cloth[:, :2] += np.clip(beyond + SKIRT_GAP, 0.0, 0.03)[:, None] * away
+    cloth[:, :2] += SKIRT_FLARE * skirt_looseness(body, cloth)[:, None] * away * (1.0, 0.4)
     return cloth
 
 
