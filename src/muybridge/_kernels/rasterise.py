@@ -83,7 +83,9 @@ def resolve(
     nearest sample, infinity where there is none; part is that of the first sample, -1 where there is none.
     """
     height, width = coverage.shape
-    samples = face_buffer.shape[0] // max(1, height)
+    if height == 0 or width == 0:
+        return
+    samples = face_buffer.shape[0] // height
     share = np.float32(1.0 / (samples * samples))
     cells = tiles.shape[1]
     for y in range(height):
