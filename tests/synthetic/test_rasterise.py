@@ -5,24 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from muybridge._kernels.rasterise import blend_skin, empty_buffers, fill_triangles, vertex_normals
+from muybridge._kernels.rasterise import blend_skin, empty_buffers, fill_triangles, resolve, vertex_normals
 from muybridge.cameras.model import Camera
 from muybridge.synthetic.rasterise import Cloth, Layer, Mesh, coverage_of, draw
+from reference.meshes import sphere
+from reference.rasterise import resolved
 
 GREY = Cloth(np.full((1, 2, 2, 2, 3), 100.0, dtype=np.float32), np.array([1.0]))
-
-
-def sphere(radius: float, centre: np.ndarray, around: int = 192) -> tuple[np.ndarray, np.ndarray]:
-    """Vertices (V, 3) and faces (F, 3) int32 of a sphere of longitudes and latitudes, faces outward."""
-    rows = around // 2
-    polar, azimuth = np.meshgrid(
-        np.linspace(0, np.pi, rows + 1), np.linspace(0, 2 * np.pi, around, False), indexing="ij"
-    )
-    unit = np.stack([np.sin(polar) * np.cos(azimuth), np.sin(polar) * np.sin(azimuth), np.cos(polar)], axis=-1)
-    i, j = np.meshgrid(np.arange(rows), np.arange(around), indexing="ij")
-    a, b = i * around + j, i * around + (j + 1) % around
-    faces = np.concatenate([np.stack([a, a + around, b], -1), np.stack([b, a + around, b + around], -1)])
-    return unit.reshape(-1, 3) * radius + centre, faces.reshape(-1, 3).astype(np.int32)
 
 
 def straight_camera(focal: float = 500.0, distortion: tuple[float, ...] = (0, 0, 0, 0, 0)) -> Camera:
@@ -138,7 +127,61 @@ class TestLens:
         assert layer.coverage.sum() == 0
 
 
+class TestRegions:
+    """Labels from the atlas are crisp lines that do not care about the mesh: here the colour changes in mid-face."""
+
+    def square(self, regions: np.ndarray) -> Mesh:
+        vertices = np.array([[-0.5, -0.5, 2], [0.5, -0.5, 2], [0.5, 0.5, 2], [-0.5, 0.5, 2.0]])
+        faces = np.array([[0, 1, 2], [0, 2, 3]], dtype=np.int32)
+        uv = (vertices[:, :2] + 0.5).astype(np.float32)
+        normals = np.tile([0.0, 0.0, -1.0], (4, 1))
+        labels, parts = np.full(2, -1, dtype=np.int32), np.zeros(2, dtype=np.int32)
+        return Mesh(vertices, normals, faces, vertices, labels, parts, uv[faces], regions)
+
+    cloth = Cloth(np.full((2, 2, 2, 2, 3), [[[[[50.0]]]], [[[[200.0]]]]], dtype=np.float32), np.ones(2))
+
+    def test_hem(self):
+        """f x / z with f = 500, z = 2: texel 16 of 64 begins at x = -0.25, 62.5 pixels left of the middle."""
+        regions = np.zeros((64, 64), dtype=np.uint8)
+        regions[:, 16:] = 1
+        layer = draw(straight_camera(), self.square(regions), self.cloth, samples=1)
+        row = layer.colours[layer.colours.shape[0] // 2, :, 0]
+        bright = row > row[row > 0].mean()
+        edge = layer.window[0] + np.flatnonzero(bright)[0] - 0.5
+        assert abs(edge - (319.5 - 0.25 * 500 / 2)) <= 0.5
+        assert len(np.unique(row[row > 0].round(3))) == 2
+
+    def test_rows_run_along_v(self):
+        regions = np.zeros((64, 64), dtype=np.uint8)
+        regions[:8] = 1
+        layer = draw(straight_camera(), self.square(regions), self.cloth, samples=1)
+        column = layer.colours[:, layer.colours.shape[1] // 2, 0]
+        assert (column > column[column > 0].mean()).sum() == pytest.approx(500 / 2 / 8, abs=1)
+
+
 class TestTwins:
+    @pytest.mark.parametrize("samples", [1, 2, 3])
+    def test_resolve(self, samples):
+        rng = np.random.default_rng(8)
+        pixels, inverse = rng.uniform(-5, 35, (30, 2)), rng.uniform(0.2, 1, 30)
+        faces = rng.integers(0, 30, (40, 3)).astype(np.int32)
+        buffers = empty_buffers(7 * samples, 5 * samples)
+        fill_triangles(pixels, inverse, faces, *buffers)
+        normals = rng.normal(size=(30, 3))
+        normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+        labels = rng.integers(-1, 3, 40).astype(np.int32)
+        uv, regions = rng.uniform(0, 1, (40, 3, 2)).astype(np.float32), rng.integers(0, 3, (9, 11)).astype(np.uint8)
+        parts = rng.integers(0, 20, 40).astype(np.int32)
+        tiles, sizes = rng.uniform(0, 255, (3, 4, 4, 4, 3)).astype(np.float32), rng.uniform(0.2, 2, 3)
+        given = (faces, normals, rng.normal(size=(30, 3)), labels, uv, regions, parts, tiles, sizes)
+        light = np.array([0.6, 0.0, 0.8])
+        out = [np.empty((5, 7, *more), dtype=kind) for more, kind in (((), "f4"), ((3,), "f4"), ((), "f4"), ((), "i2"))]
+        resolve(*buffers, *given, light, 0.4, *out)
+        for fast, slow in zip(out, resolved(*buffers, *given, light, 0.4), strict=True):
+            # Single precision; a texture's cell, found from rounded numbers, may be the next one in a pixel or two.
+            close = np.isclose(fast, slow, rtol=1e-4, atol=1e-3) | (fast == slow)
+            assert (~close).mean() < 0.02
+
     def test_fill_triangles(self):
         rng = np.random.default_rng(5)
         pixels, inverse = rng.uniform(-5, 35, (30, 2)), rng.uniform(0.2, 1, 30)

@@ -5,12 +5,20 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from muybridge.errors import InputError
 from muybridge.evaluation.names import JOINTS
-from muybridge.synthetic.skinning import Figure, load_figure
+from muybridge.synthetic.skinning import SEGMENTS, Figure, figure_names, load_figure
 
-PEOPLE = ("man", "woman")
-STATURE = {"man": 1.79, "woman": 1.67}
+STATURE = {
+    "man": 1.79,
+    "woman": 1.67,
+    "heavy_man": 1.88,
+    "slight_woman": 1.55,
+    "old_man": 1.72,
+    "old_woman": 1.59,
+    "strong_man": 1.84,
+    "child": 1.42,
+}
+LITRES = {"child": (25, 55), "heavy_man": (95, 170)}  # others weigh 45 to 110 kg
 
 
 def still(figure: Figure) -> np.ndarray:
@@ -26,26 +34,36 @@ def random_posture(figure: Figure, rng: np.random.Generator) -> np.ndarray:
     return turns * np.sign(np.linalg.det(turns))[:, None, None]
 
 
-@pytest.fixture(params=PEOPLE, scope="module")
+@pytest.fixture(params=STATURE, scope="module")
 def figure(request) -> Figure:
     return load_figure(request.param)
 
 
 class TestFile:
-    def test_unknown(self):
-        with pytest.raises(InputError, match="expected one of man, woman"):
-            load_figure("nobody")
+    def test_names(self):
+        assert figure_names() == tuple(sorted(STATURE))
+
+    def test_segments_share_the_bones_out(self, figure):
+        bones = [bone for group in SEGMENTS.values() for bone in group]
+        assert sorted(bones) == sorted(figure.bone_names)
 
     def test_constants_check_themselves(self, figure):
         assert np.allclose(figure.weights.sum(axis=1), 1)
         assert figure.faces.min() == 0 and figure.faces.max() == len(figure.vertices) - 1
         assert (figure.parents[1:] < np.arange(1, len(figure.parents))).all() and figure.parents[0] == -1
-        assert set(np.unique(figure.labels)) == set(range(len(figure.label_names)))
+        assert len(figure.face_labels) == len(figure.corner_uv) == len(figure.faces)
+        assert figure.corner_uv.min() >= 0 and figure.corner_uv.max() <= 1
+        assert figure.looseness.min() == 0 and figure.looseness.max() > 0.9
+
+    def test_every_label_is_worn(self, figure):
+        worn = set(np.unique(figure.regions)) | set(np.unique(figure.face_labels)) - {-1}
+        assert worn == set(range(len(figure.label_names)))
+        assert set(np.unique(figure.labels)) <= worn
 
     def test_stature_and_floor(self, figure):
         # Hair and soles add up to 3 cm to the bare person that was baked.
         assert 0 <= np.ptp(figure.vertices[:, 2]) - STATURE[figure.name] < 0.03
-        assert figure.vertices[:, 2].min() == 0
+        assert figure.vertices[:, 2].min() == pytest.approx(0, abs=1e-6)
 
     def test_left_is_plus_y_and_front_plus_x(self, figure):
         heads = dict(zip(figure.bone_names, figure.heads, strict=True))
@@ -55,7 +73,8 @@ class TestFile:
     def test_volume_is_a_persons(self, figure):
         # Divergence theorem; faces run outward, and a person weighs about 1 kg a litre. Clothes and hair included.
         a, b, c = figure.vertices[figure.faces].transpose(1, 0, 2)
-        assert 0.045 < np.einsum("fi,fi->f", a, np.cross(b, c)).sum() / 6 < 0.11
+        low, high = LITRES.get(figure.name, (45, 110))
+        assert low < 1e3 * np.einsum("fi,fi->f", a, np.cross(b, c)).sum() / 6 < high
 
 
 class TestSkin:

@@ -10,7 +10,7 @@ import math
 
 import numpy as np
 
-from muybridge._kernels._jit import kernel
+from muybridge._kernels._jit import kernel, vector_kernel
 
 
 @kernel
@@ -54,38 +54,98 @@ def fill_triangles(pixels, inverse_depth, faces, depth_buffer, face_buffer, corn
 
 
 @kernel
-def shade_faces(
-    faces, face_buffer, corner_buffer, normals, material, face_label, tiles, tile_size, light, ambient, colours
+def resolve(
+    depth_buffer,
+    face_buffer,
+    corner_buffer,
+    faces,
+    normals,
+    material,
+    face_labels,
+    corner_uv,
+    regions,
+    face_parts,
+    tiles,
+    tile_size,
+    light,
+    ambient,
+    coverage,
+    colours,
+    depth,
+    part,
 ):
-    """Colour every covered pixel: solid texture times Lambert's cosine.
+    """From buffers with s x s samples a pixel to a picture (h, w): coverage, premultiplied colours, depth and part.
 
-    normals and material (V, 3) float64: unit normals (world) and places in the texture (metres); face_label (F,) int32;
-    tiles (L, T, T, T, 3) float32 repeats every `tile_size` (L,) metres; light (3,) unit, towards the lamp; ambient:
-    share of the light from everywhere, a little more from above. colours (H, W, 3) float32 is filled where a face is.
+    Colour is a solid texture times Lambert's cosine. normals and material (V, 3) float64: unit normals (world) and
+    places in the texture (metres); face_labels (F,) int32, where -1 looks it up in `regions` (R, C) uint8 at the
+    face's corner_uv (F, 3, 2) float32; tiles (L, T, T, T, 3) float32 repeats every `tile_size` (L,) metres; light (3,)
+    unit, towards the lamp; ambient: share of the light from everywhere, a little more from above. depth is that of the
+    nearest sample, infinity where there is none; part is that of the first sample, -1 where there is none.
     """
-    height, width = face_buffer.shape
+    height, width = coverage.shape
+    if height == 0 or width == 0:
+        return
+    samples = face_buffer.shape[0] // height
+    share = np.float32(1.0 / (samples * samples))
     cells = tiles.shape[1]
     for y in range(height):
         for x in range(width):
-            face = face_buffer[y, x]
-            if face < 0:
-                continue
-            a, b, c = faces[face, 0], faces[face, 1], faces[face, 2]
-            wb, wc = corner_buffer[y, x, 0], corner_buffer[y, x, 1]
-            wa = 1.0 - wb - wc
-            nx = wa * normals[a, 0] + wb * normals[b, 0] + wc * normals[c, 0]
-            ny = wa * normals[a, 1] + wb * normals[b, 1] + wc * normals[c, 1]
-            nz = wa * normals[a, 2] + wb * normals[b, 2] + wc * normals[c, 2]
-            length = math.sqrt(nx * nx + ny * ny + nz * nz) + 1e-9
-            cosine = max(0.0, (nx * light[0] + ny * light[1] + nz * light[2]) / length)
-            bright = ambient * (0.8 + 0.2 * nz / length) + (1.0 - ambient) * cosine
-            label = face_label[face]
-            per_metre = cells / tile_size[label]
-            i = int(math.floor((wa * material[a, 0] + wb * material[b, 0] + wc * material[c, 0]) * per_metre)) % cells
-            j = int(math.floor((wa * material[a, 1] + wb * material[b, 1] + wc * material[c, 1]) * per_metre)) % cells
-            k = int(math.floor((wa * material[a, 2] + wb * material[b, 2] + wc * material[c, 2]) * per_metre)) % cells
-            for channel in range(3):
-                colours[y, x, channel] = tiles[label, i, j, k, channel] * bright
+            count, nearest = 0, np.float32(0.0)
+            blue, green, red = np.float32(0.0), np.float32(0.0), np.float32(0.0)
+            for v in range(y * samples, (y + 1) * samples):
+                for u in range(x * samples, (x + 1) * samples):
+                    face = face_buffer[v, u]
+                    if face < 0:
+                        continue
+                    count += 1
+                    nearest = max(nearest, depth_buffer[v, u])
+                    wb, wc = corner_buffer[v, u, 0], corner_buffer[v, u, 1]
+                    bright = np.float32(_brightness(normals, faces[face], wb, wc, light, ambient))
+                    label = face_labels[face]
+                    if label < 0:
+                        label = _region(regions, corner_uv[face], wb, wc)
+                    i, j, k = _cell(material, faces[face], wb, wc, cells / tile_size[label], cells)
+                    blue += tiles[label, i, j, k, 0] * bright
+                    green += tiles[label, i, j, k, 1] * bright
+                    red += tiles[label, i, j, k, 2] * bright
+            coverage[y, x] = count * share
+            colours[y, x, 0], colours[y, x, 1], colours[y, x, 2] = blue * share, green * share, red * share
+            depth[y, x] = np.float32(1.0) / nearest if count > 0 else np.float32(np.inf)
+            first = face_buffer[y * samples, x * samples]
+            part[y, x] = face_parts[first] if first >= 0 else -1
+
+
+@vector_kernel
+def _brightness(normals, face, wb, wc, light, ambient):
+    """Share of the lamp's light that a place on a face sends on."""
+    a, b, c = face[0], face[1], face[2]
+    wa = 1.0 - wb - wc
+    nx = wa * normals[a, 0] + wb * normals[b, 0] + wc * normals[c, 0]
+    ny = wa * normals[a, 1] + wb * normals[b, 1] + wc * normals[c, 1]
+    nz = wa * normals[a, 2] + wb * normals[b, 2] + wc * normals[c, 2]
+    scale = 1.0 / (math.sqrt(nx * nx + ny * ny + nz * nz) + 1e-9)
+    cosine = max(0.0, (nx * light[0] + ny * light[1] + nz * light[2]) * scale)
+    return ambient * (0.8 + 0.2 * nz * scale) + (1.0 - ambient) * cosine
+
+
+@vector_kernel
+def _region(regions, uv, wb, wc):
+    """Label of the texel that holds a place on a face with corners uv (3, 2)."""
+    wa = 1.0 - wb - wc
+    column = int((wa * uv[0, 0] + wb * uv[1, 0] + wc * uv[2, 0]) * regions.shape[1])
+    row = int((wa * uv[0, 1] + wb * uv[1, 1] + wc * uv[2, 1]) * regions.shape[0])
+    return int(regions[max(0, min(regions.shape[0] - 1, row)), max(0, min(regions.shape[1] - 1, column))])
+
+
+@vector_kernel
+def _cell(material, face, wb, wc, per_metre, cells):
+    """Cell (i, j, k) of a solid texture at a place on a face."""
+    a, b, c = face[0], face[1], face[2]
+    wa = 1.0 - wb - wc
+    i = int(math.floor((wa * material[a, 0] + wb * material[b, 0] + wc * material[c, 0]) * per_metre)) % cells
+    j = int(math.floor((wa * material[a, 1] + wb * material[b, 1] + wc * material[c, 1]) * per_metre)) % cells
+    k = int(math.floor((wa * material[a, 2] + wb * material[b, 2] + wc * material[c, 2]) * per_metre)) % cells
+    return i, j, k
 
 
 @kernel

@@ -3,10 +3,13 @@
 ================  =========================================================================================
 `scene`           `Scene`, `Person`, `demo_scene(seed)`, `render(scene, frame)`, `empty(scene, n)`, `truth(scene)`
 `write`           `write_scene(scene, folder)`: videos, empty room, masks, calibration, truth, measures, job
-`skinning`        `load_figure(name)`: the baked people; bones, linear blend skinning, the 15 joints
+`skinning`        `load_figure(name, cut, hair)`, `figure_names()`: the baked people; bones, skinning, the 15 joints
+`figure_file`     reading them: cuts of clothes, hair, shoes
+`dress`           loose clothes that move late
 `motion`          `Motion`, `perform(figure, motion)`: walk, wave, crouch
 `rigs`            `ring`, `looking_at`: where cameras stand
 `rasterise`       `draw(camera, mesh ...)`: z-buffer, solid textures, Lambert shading
+`benchmark`       `time_rendering()`: how fast that is
 `room`            `Room`, `picture(room, camera)`: floor, walls, their light
 `shadow`          the person's shadow on the floor
 `textures`        noise and cloth

@@ -6,11 +6,11 @@ triangle's edges stay straight: with triangles of a few pixels that is far below
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
-from muybridge._kernels.rasterise import empty_buffers, fill_triangles, shade_faces
+from muybridge._kernels.rasterise import empty_buffers, fill_triangles, resolve
 from muybridge.cameras.model import Camera
 
 LIGHT = np.array([0.35, -0.45, 0.82])
@@ -39,8 +39,11 @@ class Mesh:
     vertices, normals : (V, 3) float64, metres and unit vectors, world
     faces : (F, 3) int32
     material : (V, 3) float64, metres: places in the cloth
-    face_labels : (F,) int32: which cloth each face wears
+    face_labels : (F,) int32: which cloth each face wears; -1 where the region map decides, texel by texel
     face_parts : (F,) int32: which part of the body each face belongs to
+    corner_uv : (F, 3, 2) float32 in 0-1: where in the region map each corner of a face lies; may be empty if no label
+        is -1
+    regions : (rows, columns) uint8: labels of an atlas; u runs along its columns, v along its rows
     """
 
     vertices: np.ndarray
@@ -49,6 +52,8 @@ class Mesh:
     material: np.ndarray
     face_labels: np.ndarray
     face_parts: np.ndarray
+    corner_uv: np.ndarray = field(default_factory=lambda: np.zeros((0, 3, 2), dtype=np.float32))
+    regions: np.ndarray = field(default_factory=lambda: np.zeros((1, 1), dtype=np.uint8))
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,45 +91,49 @@ def draw(
     ----------
     light : (3,) towards the lamp, world; ambient : share of light that has no direction
     """
-    place = camera.world_to_camera(mesh.vertices)
-    pixels = camera.camera_to_pixel(place)
-    window = _window(pixels, camera.size)
-    left, top, right, bottom = window
-    width, height = right - left, bottom - top
-    fine = (pixels - (left, top) + 0.5) * samples - 0.5
+    window, fine, inverse_depth = _projected(camera, mesh.vertices, samples)
+    width, height = window[2] - window[0], window[3] - window[1]
     buffers = empty_buffers(width * samples, height * samples)
-    inverse_depth = np.where(np.isfinite(pixels[:, 0]), 1.0 / np.where(place[:, 2] > 0, place[:, 2], -1.0), -1.0)
     fill_triangles(fine, inverse_depth, mesh.faces, *buffers)
-    colours = np.zeros((height * samples, width * samples, 3), dtype=np.float32)
+    layer = Layer(
+        window,
+        np.empty((height, width), dtype=np.float32),
+        np.empty((height, width, 3), dtype=np.float32),
+        np.empty((height, width), dtype=np.float32),
+        np.empty((height, width), dtype=np.int16),
+    )
     light = np.asarray(light, dtype=np.float64) / np.linalg.norm(light)
-    shade_faces(
+    resolve(
+        *buffers,
         mesh.faces,
-        buffers[1],
-        buffers[2],
         mesh.normals,
         mesh.material,
         mesh.face_labels,
+        mesh.corner_uv,
+        mesh.regions,
+        mesh.face_parts,
         cloth.tiles,
         cloth.tile_size,
         light,
         ambient,
-        colours,
+        layer.coverage,
+        layer.colours,
+        layer.depth,
+        layer.part,
     )
-    nearest = _blocks(buffers[0], samples).max(axis=(1, 3))
-    with np.errstate(divide="ignore"):
-        depth = np.float32(1.0) / nearest
-    return Layer(
-        window,
-        _blocks((buffers[1] >= 0).astype(np.float32), samples).mean(axis=(1, 3)),
-        _blocks(colours, samples).mean(axis=(1, 3)),
-        depth,
-        _parts(buffers[1][::samples, ::samples], mesh.face_parts),
-    )
+    return layer
 
 
-def _parts(faces: np.ndarray, face_parts: np.ndarray) -> np.ndarray:
-    """(h, w) int16: the part that each pixel's face (h, w) belongs to."""
-    return np.where(faces >= 0, face_parts[faces], -1).astype(np.int16)
+def _projected(
+    camera: Camera, vertices: np.ndarray, samples: int
+) -> tuple[tuple[int, int, int, int], np.ndarray, np.ndarray]:
+    """The picture's window, vertices (V, 2) in its samples, and 1/z (V,), -1 where a vertex has no pixel."""
+    place = camera.world_to_camera(vertices)
+    pixels = camera.camera_to_pixel(place)
+    window = _window(pixels, camera.size)
+    fine = (pixels - window[:2] + 0.5) * samples - 0.5
+    inverse = np.where(np.isfinite(pixels[:, 0]), 1.0 / np.where(place[:, 2] > 0, place[:, 2], -1.0), -1.0)
+    return window, fine, inverse
 
 
 def coverage_of(points: np.ndarray, faces: np.ndarray, width: int, height: int) -> np.ndarray:
@@ -132,12 +141,6 @@ def coverage_of(points: np.ndarray, faces: np.ndarray, width: int, height: int) 
     buffers = empty_buffers(width, height)
     fill_triangles(points, np.ones(len(points)), faces, *buffers)
     return buffers[1] >= 0
-
-
-def _blocks(image: np.ndarray, samples: int) -> np.ndarray:
-    """(h s, w s, ...) -> (h, s, w, s, ...) view."""
-    height, width = image.shape[0] // samples, image.shape[1] // samples
-    return image.reshape(height, samples, width, samples, *image.shape[2:])
 
 
 def _window(pixels: np.ndarray, size: tuple[int, int]) -> tuple[int, int, int, int]:

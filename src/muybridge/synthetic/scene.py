@@ -38,9 +38,10 @@ class Garment:
 
 
 BARE = (
-    Garment("skin", "plain", (150, 176, 220), tile=0.5),
+    Garment("skin", "smooth", (150, 176, 220), tile=0.5),
     Garment("hair", "denim", (42, 58, 84), tile=0.25),
     Garment("eyes", "plain", (90, 90, 90)),
+    Garment("soles", "plain", (70, 74, 78)),
 )
 DEMO_OUTFIT = (
     Garment("shirt", "stripes", (58, 46, 176), (206, 210, 214), tile=0.28),

@@ -1,7 +1,7 @@
 """A baked person: a mesh, its bones, and linear blend skinning.
 
-The mesh is no body model of the tracker: 12,488 vertices of a person with clothes and hair. Its bones carry the truth:
-the 15 reported joints are bone heads, which lie at the anatomical joint centres.
+The mesh is no body model of the tracker: 14,000 vertices of a person with clothes, hair and shoes. Its bones carry the
+truth: the 15 reported joints are bone heads, which lie at the anatomical joint centres.
 
 Frames
     World: metres, z up; the person faces +x, left is +y. Every bone has a frame that is parallel to the world's in the
@@ -13,14 +13,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from importlib import resources
 
 import numpy as np
 
 from muybridge._kernels.rasterise import blend_skin, vertex_normals
-from muybridge.errors import InputError
 from muybridge.evaluation.names import JOINTS
+from muybridge.synthetic.dress import folds, hang
+from muybridge.synthetic.figure_file import figure_names, read_figure
 from muybridge.synthetic.rasterise import Mesh
+
+__all__ = ["JOINT_BONES", "SEGMENTS", "Figure", "figure_names", "load_figure"]
 
 #: The bone at whose head each joint lies; pelvis, thorax and head_top are made from several points (`Figure.joints`).
 JOINT_BONES = {
@@ -31,21 +33,43 @@ JOINT_BONES = {
     "knee": "shank",
     "ankle": "foot",
 }
+#: The bones of each segment whose visibility a scene reports.
+SEGMENTS: dict[str, tuple[str, ...]] = {
+    "head": ("head", "neck"),
+    "torso": ("thorax", "abdomen", "left_clavicle", "right_clavicle"),
+    "pelvis": ("pelvis",),
+    **{
+        f"{side}_{segment}": tuple(f"{side}_{bone}" for bone in (segment, *more))
+        for side in ("left", "right")
+        for segment, more in (
+            ("upper_arm", ()),
+            ("forearm", ()),
+            ("hand", ()),
+            ("thigh", ()),
+            ("shank", ()),
+            ("foot", ("toes",)),
+        )
+    },
+}
 FORWARD, DOWN = np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.0, -1.0])
 
 
 @dataclass(frozen=True, eq=False)
 class Figure:
-    """A baked person at rest.
+    """A baked person at rest, dressed.
 
     Parameters
     ----------
-    name : str
+    name, cut, hair : str
     vertices : (V, 3) float64, metres, rest posture (arms half raised), soles on z = 0
     faces : (F, 3) int32
     weights : (V, 4) float64, rows sum to 1
     bone_indices : (V, 4) int32
-    labels : (V,) int32, into label_names (skin, hair, shirt, trousers, shoes, eyes)
+    labels : (V,) int32, into label_names (skin, hair, shirt, trousers, shoes, eyes, soles)
+    face_labels : (F,) int32; -1 where the region map decides
+    corner_uv : (F, 3, 2) float32 in 0-1: the corners' places in the region map
+    regions : (rows, columns) uint8: the label of each texel, see `rasterise.Mesh`
+    looseness : (V,) float64 in 0-1: how far loose cloth may hang off the skin
     label_names, bone_names : tuple of str
     parents : (B,) int, parents come first, -1 for the root
     heads : (B, 3) float64, metres: where each bone begins, rest posture
@@ -53,11 +77,17 @@ class Figure:
     """
 
     name: str
+    cut: str
+    hair: str
     vertices: np.ndarray
     faces: np.ndarray
     weights: np.ndarray
     bone_indices: np.ndarray
     labels: np.ndarray
+    face_labels: np.ndarray
+    corner_uv: np.ndarray
+    regions: np.ndarray
+    looseness: np.ndarray
     label_names: tuple[str, ...]
     bone_names: tuple[str, ...]
     parents: np.ndarray
@@ -67,12 +97,6 @@ class Figure:
     def bone(self, name: str) -> int:
         """The index of a bone."""
         return self.bone_names.index(name)
-
-    @cached_property
-    def face_labels(self) -> np.ndarray:
-        """(F,) int32: the label of each face, that of its majority of corners."""
-        a, b, c = self.labels[self.faces].T
-        return np.where(b == c, b, a).astype(np.int32)
 
     @cached_property
     def to_neutral(self) -> np.ndarray:
@@ -137,10 +161,43 @@ class Figure:
         a, b, c = self.bone_indices[self.faces, 0].T
         return np.where(b == c, b, a).astype(np.int32)
 
-    def mesh(self, world: np.ndarray, places: np.ndarray) -> Mesh:
-        """The figure in the posture that `frames` gave, ready to be drawn; its parts are bones."""
+    @cached_property
+    def folds(self) -> np.ndarray:
+        """(V,) in -1 to 1: where loose cloth bulges."""
+        return folds(self.material)
+
+    def mesh(
+        self,
+        world: np.ndarray,
+        places: np.ndarray,
+        *,
+        earlier: tuple[np.ndarray, np.ndarray] | None = None,
+        looseness: float = 0.0,
+    ) -> Mesh:
+        """The figure in the posture that `frames` gave, ready to be drawn; its parts are bones.
+
+        Parameters
+        ----------
+        world : (B, 3, 3); places : (B, 3) metres, world
+        earlier : the same a moment ago (`dress.bones_at`), which loose cloth is still drawn to; None: it stands still
+        looseness : metres that cloth hangs off the skin where it is loosest; 0 is tight
+        """
         vertices = self.skin(world, places)
-        return Mesh(vertices, self.normals(vertices), self.faces, self.material, self.face_labels, self.face_parts)
+        normals = self.normals(vertices)
+        if looseness > 0:
+            before = vertices if earlier is None else self.skin(earlier[0], earlier[1] - earlier[1][0] + places[0])
+            vertices = hang(vertices, normals, before, looseness * self.looseness, self.folds)
+            normals = self.normals(vertices)
+        return Mesh(
+            vertices,
+            normals,
+            self.faces,
+            self.material,
+            self.face_labels,
+            self.face_parts,
+            self.corner_uv,
+            self.regions,
+        )
 
     def carried(self, point: np.ndarray, bone: int, world: np.ndarray, places: np.ndarray) -> np.ndarray:
         """(3,) metres, world: where a rest-posture point that is fixed to a bone has gone."""
@@ -187,30 +244,16 @@ class Figure:
         turns[toes] = turns[foot]
 
 
-def load_figure(name: str) -> Figure:
-    """A person baked by scripts/bake_bodies.py: "man" (1.79 m) or "woman" (1.67 m)."""
-    folder = resources.files("muybridge.synthetic") / "bodies"
-    known = sorted(entry.name[:-4] for entry in folder.iterdir() if entry.name.endswith(".npz"))
-    if name not in known:
-        raise InputError("figure", expected=f"one of {', '.join(known)}", got=repr(name))
-    with (folder / f"{name}.npz").open("rb") as stream, np.load(stream, allow_pickle=False) as file:
-        weights = file["weights"].astype(np.float64)
-        return Figure(
-            name=name,
-            vertices=file["vertices"].astype(np.float64),
-            faces=file["faces"].astype(np.int32),
-            weights=weights / weights.sum(axis=1, keepdims=True),
-            bone_indices=file["bone_indices"].astype(np.int32),
-            labels=file["labels"].astype(np.int32),
-            label_names=tuple(str(label) for label in file["label_names"]),
-            bone_names=tuple(str(bone) for bone in file["bone_names"]),
-            parents=file["bone_parents"].astype(np.int64),
-            heads=file["bone_heads"].astype(np.float64),
-            landmarks={
-                str(key): point.astype(np.float64)
-                for key, point in zip(file["landmark_names"], file["landmarks"], strict=True)
-            },
-        )
+def load_figure(name: str, cut: str | None = None, hair: str | None = None) -> Figure:
+    """A person baked by scripts/bake_bodies.py.
+
+    Parameters
+    ----------
+    name : one of `figure_names()`: "man" (1.79 m), "woman" (1.67 m), ...
+    cut : of the clothes: "short_sleeves", "long_sleeves", "shorts" or "skirt"; None: the person's own
+    hair : "short", "long" or "bun"; None: the person's own
+    """
+    return Figure(**read_figure(name, cut, hair))
 
 
 def _turn_between(source: tuple[np.ndarray, np.ndarray], target: tuple[np.ndarray, np.ndarray]) -> np.ndarray:

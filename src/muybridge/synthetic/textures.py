@@ -8,7 +8,9 @@ from muybridge.errors import InputError
 from muybridge.synthetic.rasterise import Cloth
 
 CELLS = 40  # of a solid texture along each side
-PATTERNS = ("plain", "stripes", "checks", "blotches", "denim")
+PATTERNS = ("plain", "stripes", "checks", "blotches", "denim", "smooth")
+#: how much the cells of a cloth differ, as a share of its colour
+GRAIN = {"denim": 0.16, "smooth": 0.015}
 Colour = tuple[int, int, int]
 
 
@@ -37,7 +39,8 @@ def smooth_noise(rng: np.random.Generator, points: np.ndarray, cell: float, octa
 def solid(rng: np.random.Generator, pattern: str, colour: Colour, second: Colour) -> np.ndarray:
     """(CELLS, CELLS, CELLS, 3) float32 BGR: one tile of a cloth; its last axis in space is up.
 
-    `stripes` run round the body, `checks` cross them, `blotches` are blots of the second colour, `denim` is grain.
+    `stripes` run round the body, `checks` cross them, `blotches` are blots of the second colour, `denim` is grain,
+    `smooth` has next to none, as skin.
     """
     if pattern not in PATTERNS:
         raise InputError("cloth: pattern", expected=f"one of {', '.join(PATTERNS)}", got=repr(pattern))
@@ -51,8 +54,7 @@ def solid(rng: np.random.Generator, pattern: str, colour: Colour, second: Colour
     elif pattern == "blotches":
         share = (_blots(rng) > 0.25).astype(float)
     tile = first + (other - first) * share[..., None]
-    grain = {"denim": 0.16, "blotches": 0.05}.get(pattern, 0.05)
-    tile *= 1 + grain * rng.standard_normal((CELLS, CELLS, CELLS, 1)) + 0.05 * _blots(rng)[..., None]
+    tile *= 1 + GRAIN.get(pattern, 0.05) * rng.standard_normal((CELLS, CELLS, CELLS, 1)) + 0.05 * _blots(rng)[..., None]
     return np.clip(tile, 0, 255).astype(np.float32)
 
 

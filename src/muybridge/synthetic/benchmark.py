@@ -1,0 +1,76 @@
+"""How fast people are rendered: CPU time of this process on one thread, the best of several.
+
+The person is as tall as the picture of 640 x 480; two by two samples a pixel, textures and light included, the room and
+the sensor's noise not.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+
+from muybridge.cameras.model import Camera
+from muybridge.synthetic.dress import bones_at
+from muybridge.synthetic.motion import Motion, perform
+from muybridge.synthetic.rasterise import Cloth, draw
+from muybridge.synthetic.rigs import looking_at
+from muybridge.synthetic.skinning import Figure, load_figure
+from muybridge.synthetic.textures import clothing
+
+FRAME, LAG = 12, 3.0  # of a walk at 30 frames a second
+LOOSENESS = 0.03  # metres
+
+
+@dataclass(frozen=True)
+class RenderTiming:
+    """Frames of one camera in a second of CPU time."""
+
+    name: str
+    frames_per_second: float
+
+
+def time_rendering(name: str = "man", repeats: int = 9) -> list[RenderTiming]:
+    """Drawing alone; skinning, normals and drawing; the same with loose clothes."""
+    figure = load_figure(name)
+    track = perform(figure, Motion("walk", 1.0))
+    now = track.rotations[FRAME], track.places[FRAME]
+    before = bones_at(track.rotations, track.places, FRAME - LAG)
+    mesh = figure.mesh(*now)
+    camera, cloth = _filled(mesh.vertices), _cloth(figure)
+    work: dict[str, Callable[[], object]] = {
+        "draw a person": partial(draw, camera, mesh, cloth),
+        "skin and draw a person": lambda: draw(camera, figure.mesh(*now), cloth),
+        "skin and draw a person in loose clothes": lambda: draw(
+            camera, figure.mesh(*now, earlier=before, looseness=LOOSENESS), cloth
+        ),
+    }
+    return [RenderTiming(what, 1.0 / _best(call, repeats)) for what, call in work.items()]
+
+
+def _filled(vertices: np.ndarray, distance: float = 4.0, size: tuple[int, int] = (640, 480)) -> Camera:
+    """A level camera in whose picture the vertices (V, 3) are as tall as the picture, to a few rows."""
+    low, high = vertices.min(axis=0), vertices.max(axis=0)
+    middle = 0.5 * (low + high)
+    focal = 0.98 * size[1] * (distance - 0.5 * (high[0] - low[0])) / (high[2] - low[2])
+    return looking_at("bench", middle + (distance, 0.0, 0.0), middle, focal=focal, size=size)
+
+
+def _cloth(figure: Figure) -> Cloth:
+    """Stripes on everything."""
+    outfit = {label: ("stripes", (58, 46, 176), (206, 210, 214), 0.28) for label in figure.label_names}
+    return clothing(np.random.default_rng(0), outfit, figure.label_names)
+
+
+def _best(call: Callable[[], object], repeats: int) -> float:
+    """Seconds of CPU time of the fastest of several calls, after one that compiles."""
+    call()
+    times = []
+    for _ in range(repeats):
+        start = time.process_time()
+        call()
+        times.append(time.process_time() - start)
+    return min(times)
