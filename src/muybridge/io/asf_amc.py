@@ -52,7 +52,7 @@ def read_amc(
     ----------
     path : str or Path, the AMC
     skeleton : str or Path, optional
-        The ASF; left out, the one in the same folder whose name begins the AMC's (02.asf for 02_01.amc), or the only one.
+        The ASF; left out, the one beside it whose name begins the AMC's (02.asf for 02_01.amc), or the only one.
     rate : float
         Frames per second.
     scale : float, optional

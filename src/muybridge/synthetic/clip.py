@@ -8,7 +8,8 @@ import numpy as np
 
 from muybridge.errors import InputError
 
-KINDS = ("walk", "wave", "crouch")
+#: Their order seeds what they do: new ones come last.
+KINDS = ("walk", "wave", "crouch", "jog", "hop", "jump", "turn", "sidestep", "punch")
 
 
 @dataclass(frozen=True)
@@ -17,12 +18,15 @@ class Motion:
 
     Parameters
     ----------
-    kind : "walk", "wave" (standing, one arm up) or "crouch" (down and up again)
+    kind : one of KINDS
+        "walk"; "wave", standing, one arm up; "crouch", down and up again; "jog"; on the
+        spot "hop" on one leg, "jump" on both, and "turn"; "sidestep", facing ahead; "punch", standing
     duration, rate : seconds, frames per second
-    heading : radians, direction walked at the middle of the clip, counter-clockwise from +x
-    turn_rate : radians per second, to the left; only a walk turns
+    heading : radians, at the middle of the clip, counter-clockwise from +x
+        Walked and jogged at; faced, where the feet stay on the spot or go sideways.
+    turn_rate : radians per second, to the left: of walk, jog and turn; a turn of 0 takes its own side and speed
     place : (x, y) metres, world, of the pelvis at the middle of the clip
-    cadence : strides (two steps) per second, or waves or crouches per second
+    cadence : pace: strides (two steps) per second of a walk, others in proportion
     vigour : factor on the amplitudes, 1 = table
     """
 

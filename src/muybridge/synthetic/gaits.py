@@ -12,6 +12,7 @@ import numpy as np
 
 from muybridge.synthetic.angles import Angles, add, periodic, smooth_step
 from muybridge.synthetic.clip import Motion
+from muybridge.synthetic.limbs import SIDES
 
 #: Degrees at equal steps of the stride of the same leg: flexion of hip and knee, dorsiflexion of ankle and toes. They
 #: were fitted, near normal gait, so that a body carried by them goes at an even speed and a steady height.
@@ -73,6 +74,36 @@ def crouch(rng: np.random.Generator, motion: Motion) -> tuple[Angles, np.ndarray
     add(angles, "thorax", -10.0 * depth)
     add(angles, "neck", 14.0 * depth)
     return angles, np.ones((len(motion.times), 2))
+
+
+def punch(rng: np.random.Generator, motion: Motion) -> tuple[Angles, np.ndarray]:
+    """In a boxer's stance, the fists before the chin: straight punches, now one arm, now the other."""
+    angles = standing(rng, motion)
+    lead, rear = SIDES if rng.uniform() < 0.6 else SIDES[::-1]
+    sign = 1.0 if lead == "left" else -1.0
+    phase = rng.uniform() + 0.8 * motion.cadence * motion.times
+    thrust = {lead: _thrust(phase), rear: _thrust(phase - 0.45)}
+    for side in SIDES:
+        out, inward = thrust[side] * min(motion.vigour, 1.1), -1.0 if side == "left" else 1.0
+        add(angles, f"{side}_clavicle", 0.0, 6.0 * out, 10.0 * out * inward)
+        add(angles, f"{side}_upper_arm", 28.0 + 54.0 * out, 4.0 - 6.0 * out, inward * 12.0 * out)
+        add(angles, f"{side}_forearm", 122.0 - 112.0 * out, 0.0, inward * 10.0 * (1.0 - out))
+    twist = sign * 15.0 * (thrust[rear] - 0.8 * thrust[lead])
+    add(angles, "pelvis", -5.0, 0.0, 0.3 * twist - 14.0 * sign)
+    add(angles, "abdomen", -6.0, 0.0, 0.5 * twist)
+    add(angles, "thorax", -4.0, 0.0, 0.6 * twist)
+    add(angles, "neck", 4.0, 0.0, 14.0 * sign - 0.8 * twist)
+    for side, ahead in ((lead, 1.0), (rear, -1.0)):
+        add(angles, f"{side}_thigh", 14.0 + 10.0 * ahead, 5.0)
+        add(angles, f"{side}_shank", -28.0)
+        add(angles, f"{side}_foot", 14.0 - 10.0 * ahead)
+    return angles, np.ones((len(motion.times), 2))
+
+
+def _thrust(phase: np.ndarray) -> np.ndarray:
+    """(T,) 0 with the fist at the chin, 1 with the arm straight: out in a fifth of the time, back in a little more."""
+    own = phase % 1.0
+    return smooth_step(own / 0.2) * (1.0 - smooth_step((own - 0.22) / 0.28))
 
 
 def standing(rng: np.random.Generator, motion: Motion) -> Angles:

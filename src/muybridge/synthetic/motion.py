@@ -2,28 +2,66 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
-from muybridge.synthetic.angles import rotations
+from muybridge.synthetic import footwork, gaits
+from muybridge.synthetic.angles import Angles, rotations
 from muybridge.synthetic.clip import KINDS, Motion, Track
-from muybridge.synthetic.gaits import crouch, walk, wave
+from muybridge.synthetic.limbs import leg_length
 from muybridge.synthetic.planting import planted
 from muybridge.synthetic.skinning import Figure
+from muybridge.synthetic.stepping import Steps, heading_at, step
 
 __all__ = ["KINDS", "Motion", "Track", "perform"]
 
-ANGLES = {"walk": walk, "wave": wave, "crouch": crouch}
+#: Angles of the whole body, and the share (T, 2) of the weight on the left and right foot.
+FROM_ANGLES: dict[str, Callable[[np.random.Generator, Motion], tuple[Angles, np.ndarray]]] = {
+    "walk": gaits.walk,
+    "wave": gaits.wave,
+    "crouch": gaits.crouch,
+    "punch": gaits.punch,
+}
+#: Angles of all but the legs, and the steps; the last argument is the length of the legs in metres.
+FROM_STEPS: dict[str, Callable[[np.random.Generator, Motion, float], tuple[Angles, Steps]]] = {
+    "jog": footwork.jog,
+    "hop": footwork.hop,
+    "jump": footwork.jump,
+    "turn": footwork.turn,
+    "sidestep": footwork.sidestep,
+}
 
 
 def perform(figure: Figure, motion: Motion) -> Track:
-    """Let the figure do the motion: angles, then feet on the floor without sliding, then the path's place."""
+    """Let the figure do the motion."""
     rng = np.random.default_rng([motion.seed, KINDS.index(motion.kind)])
-    angles, bearing = ANGLES[motion.kind](rng, motion)
-    turn_rate = motion.turn_rate if motion.kind == "walk" else 0.0
-    heading = motion.heading + turn_rate * (motion.times - 0.5 * motion.times[-1])
-    local = rotations(figure, angles, heading)
-    worlds, places = zip(*(figure.frames(turns, np.zeros(3)) for turns in local), strict=True)
-    worlds, places = np.array(worlds), np.array(places)
-    places += planted(figure, worlds, places, bearing, motion)[:, None]
+    worlds, places = (_by_steps if motion.kind in FROM_STEPS else _by_angles)(rng, figure, motion)
     joints = np.array([figure.joints(world, place) for world, place in zip(worlds, places, strict=True)])
     return Track(motion.times, worlds, places, joints)
+
+
+def _by_angles(rng: np.random.Generator, figure: Figure, motion: Motion) -> tuple[np.ndarray, np.ndarray]:
+    """Angles, then feet on the floor without sliding, then the path's place."""
+    angles, bearing = FROM_ANGLES[motion.kind](rng, motion)
+    turn_rate = motion.turn_rate if motion.kind == "walk" else 0.0
+    heading = motion.heading + turn_rate * (motion.times - 0.5 * motion.times[-1])
+    worlds, places = _posed(figure, rotations(figure, angles, heading))
+    places += planted(figure, worlds, places, bearing, motion)[:, None]
+    return worlds, places
+
+
+def _by_steps(rng: np.random.Generator, figure: Figure, motion: Motion) -> tuple[np.ndarray, np.ndarray]:
+    """The path and its footprints, then legs that reach them."""
+    angles, steps = FROM_STEPS[motion.kind](rng, motion, leg_length(figure))
+    heading = heading_at(steps, motion.times - 0.5 * motion.times[-1], motion.heading)
+    worlds, places = _posed(figure, rotations(figure, angles, heading))
+    step(figure, worlds, places, steps, motion.times, motion.heading)
+    places[..., :2] += np.asarray(motion.place) - places[len(places) // 2, 0, :2]
+    return worlds, places
+
+
+def _posed(figure: Figure, local: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """(T, B, 3, 3) and (T, B, 3): world rotations and places, the pelvis at the origin."""
+    worlds, places = zip(*(figure.frames(turns, np.zeros(3)) for turns in local), strict=True)
+    return np.array(worlds), np.array(places)

@@ -31,6 +31,15 @@ def planted(figure: Figure, worlds: np.ndarray, places: np.ndarray, bearing: np.
 
 def sole(figure: Figure, worlds: np.ndarray, places: np.ndarray, side: str) -> np.ndarray:
     """(T, points, 3): heel, ball and tip of a shoe's sole; they stand for the mesh's lowest vertices."""
+    foot, toes = figure.bone(f"{side}_foot"), figure.bone(f"{side}_toes")
+    points = []
+    for reach, bone in zip(foot_points(figure, side), (foot, foot, toes), strict=True):
+        points.append(places[:, bone] + worlds[:, bone] @ reach)
+    return np.stack(points, axis=1)
+
+
+def foot_points(figure: Figure, side: str) -> np.ndarray:
+    """(3, 3) metres: heel and ball from the ankle, tip from the head of the toes, in the neutral posture."""
     shoes = np.flatnonzero(figure.labels == figure.label_names.index("shoes"))
     left = figure.vertices[shoes, 1] > 0
     own = figure.vertices[shoes[left if side == "left" else ~left]]
@@ -39,11 +48,12 @@ def sole(figure: Figure, worlds: np.ndarray, places: np.ndarray, side: str) -> n
     ball = figure.heads[toes][0]
     heel, tip = low[np.argmin(low[:, 0])], low[np.argmax(low[:, 0])]
     middle = low[np.argmin(np.abs(low[:, 0] - ball) + low[:, 2])]
-    points = []
-    for point, bone in ((heel, foot), (middle, foot), (tip, toes)):
-        reach = figure.to_neutral[bone] @ (point * (1, 1, 0) - figure.heads[bone])
-        points.append(places[:, bone] + worlds[:, bone] @ reach)
-    return np.stack(points, axis=1)
+    return np.stack(
+        [
+            figure.to_neutral[bone] @ (point * (1, 1, 0) - figure.heads[bone])
+            for point, bone in ((heel, foot), (middle, foot), (tip, toes))
+        ]
+    )
 
 
 def smoothed(values: np.ndarray, width: float) -> np.ndarray:
