@@ -29,7 +29,7 @@ def jog(rng: np.random.Generator, motion: Motion, leg: float) -> tuple[Angles, S
         turn_rate=motion.turn_rate,
         apart=0.05 * leg / LEG,
         ahead=-0.02,
-        lift=rng.uniform(0.20, 0.26) * leg / LEG,
+        lift=rng.uniform(0.14, 0.19) * leg / LEG,
         pitch=((0.0, 2.0), (0.12, 0.0), (0.2, 4.0), (0.36, 38.0), (0.55, 88.0), (0.68, 74.0), (0.88, 12.0)),
         flight=True,
     )

@@ -1,4 +1,4 @@
-"""Let a figure do what a `Motion` says."""
+"""Let a figure do what a `Motion` says, or a `Recorded` one."""
 
 from __future__ import annotations
 
@@ -11,10 +11,11 @@ from muybridge.synthetic.angles import Angles, rotations
 from muybridge.synthetic.clip import KINDS, Motion, Track
 from muybridge.synthetic.limbs import leg_length
 from muybridge.synthetic.planting import planted
+from muybridge.synthetic.recorded import Recorded, pose
 from muybridge.synthetic.skinning import Figure
 from muybridge.synthetic.stepping import Steps, heading_at, step
 
-__all__ = ["KINDS", "Motion", "Track", "perform"]
+__all__ = ["KINDS", "Motion", "Recorded", "Track", "perform"]
 
 #: Angles of the whole body, and the share (T, 2) of the weight on the left and right foot.
 FROM_ANGLES: dict[str, Callable[[np.random.Generator, Motion], tuple[Angles, np.ndarray]]] = {
@@ -33,12 +34,17 @@ FROM_STEPS: dict[str, Callable[[np.random.Generator, Motion, float], tuple[Angle
 }
 
 
-def perform(figure: Figure, motion: Motion) -> Track:
+def perform(figure: Figure, motion: Motion | Recorded) -> Track:
     """Let the figure do the motion."""
-    rng = np.random.default_rng([motion.seed, KINDS.index(motion.kind)])
-    worlds, places = (_by_steps if motion.kind in FROM_STEPS else _by_angles)(rng, figure, motion)
+    worlds, places = pose(figure, motion) if isinstance(motion, Recorded) else _made(figure, motion)
     joints = np.array([figure.joints(world, place) for world, place in zip(worlds, places, strict=True)])
     return Track(motion.times, worlds, places, joints)
+
+
+def _made(figure: Figure, motion: Motion) -> tuple[np.ndarray, np.ndarray]:
+    """(T, B, 3, 3) and (T, B, 3) metres, world: a motion that needs no recording."""
+    rng = np.random.default_rng([motion.seed, KINDS.index(motion.kind)])
+    return (_by_steps if motion.kind in FROM_STEPS else _by_angles)(rng, figure, motion)
 
 
 def _by_angles(rng: np.random.Generator, figure: Figure, motion: Motion) -> tuple[np.ndarray, np.ndarray]:

@@ -138,7 +138,7 @@ def _footfall(
 
 
 def _lowest(figure: Figure, worlds: np.ndarray, side: str) -> np.ndarray:
-    """(T, 3) metres: from the ankle to the sole: the ball's x and y, the z of heel, ball or tip, whichever is lowest."""
+    """(T, 3) metres: from the ankle: the ball's x and y, and the z of heel, ball or tip, whichever is lowest."""
     foot, toes = figure.bone(f"{side}_foot"), figure.bone(f"{side}_toes")
     heel, ball, tip = foot_points(figure, side)
     points = [worlds[:, foot] @ heel, worlds[:, foot] @ ball]
