@@ -270,7 +270,7 @@ def _recording(asf: _Asf, frames: list[dict[str, list[float]]], radians: float) 
         values, dofs = np.array([frame[name] for frame in frames]), np.array(bone.dofs)
         own = turns(["XYZ".index(axis) for axis in bone.order[::-1]], asf.radians * np.array(bone.axis[::-1]))
         angles = dofs >= 3
-        moved = turns((dofs[angles] - 3)[::-1], radians * values[:, angles][:, ::-1])
+        moved = turns([int(dof) - 3 for dof in dofs[angles][::-1]], radians * values[:, angles][:, ::-1])
         rotations[:, index] = own @ moved @ own.T
         if index == 0:
             root_places[:, dofs[~angles]] = values[:, ~angles]

@@ -24,6 +24,9 @@ from muybridge.io.trc import guess_axes
 
 CHANNELS = tuple(f"{axis}{kind}" for kind in ("position", "rotation") for axis in "XYZ")
 
+#: Stands for an end site among indices of joints.
+END = -1
+
 
 @dataclass
 class _Joint:
@@ -67,30 +70,24 @@ def read_bvh(path: str | Path, *, scale: float | None = None, axes: str | None =
 def _hierarchy(lines: list[str], path: str | Path) -> list[_Joint]:
     """The joints in the order of their channels."""
     joints: list[_Joint] = []
-    open_joints: list[int] = []  # -1: an end site
+    open_joints: list[int] = []  # END: an end site
     opening: int | None = None
     for index, line in enumerate(lines[1:], start=2):
-        words, where = line.split(), f"{path}, line {index}"
-        if words and words[-1] == "{" and len(words) > 1:  # brace behind the name
-            words = words[:-1]
-            brace = True
-        else:
-            brace = words == ["{"]
-        if words and words[0] in ("ROOT", "JOINT", "End"):
-            opening = _opened(joints, open_joints, words, where)
-        if brace:
-            if opening is None:
-                raise InputError(where, expected="ROOT, JOINT or End Site before a brace", got="a brace")
-            open_joints.append(opening)
-            opening = None
-        elif words == ["}"]:
-            if not open_joints:
-                raise InputError(where, expected="as many braces opened as closed", got="one closed too many")
-            open_joints.pop()
-        elif words and words[0] in ("OFFSET", "CHANNELS"):
-            _described(joints, open_joints, words, where)
-        elif words and words[0] not in ("ROOT", "JOINT", "End"):
-            raise InputError(where, expected="ROOT, JOINT, End Site, OFFSET, CHANNELS or a brace", got=repr(words[0]))
+        where = f"{path}, line {index}"
+        for words in _statements(line):
+            if words[0] in ("ROOT", "JOINT", "End"):
+                opening = _opened(joints, open_joints, words, where)
+            elif words[0] == "{":
+                if opening is None:
+                    raise InputError(where, expected="ROOT, JOINT or End Site before a brace", got="a brace")
+                open_joints.append(opening)
+                opening = None
+            elif words[0] == "}":
+                if not open_joints:
+                    raise InputError(where, expected="as many braces opened as closed", got="one closed too many")
+                open_joints.pop()
+            else:
+                _described(joints, open_joints, words, where)
     if open_joints or not joints:
         raise InputError(
             f"{path}: hierarchy", expected="a ROOT whose braces are closed", got=f"{len(open_joints)} open"
@@ -98,10 +95,16 @@ def _hierarchy(lines: list[str], path: str | Path) -> list[_Joint]:
     return joints
 
 
+def _statements(line: str) -> list[list[str]]:
+    """A line's words, braces apart."""
+    parts = line.replace("{", "\n{\n").replace("}", "\n}\n").split("\n")
+    return [part.split() for part in parts if part.strip()]
+
+
 def _opened(joints: list[_Joint], open_joints: list[int], words: list[str], where: str) -> int:
     """Add a joint; the index that stands for it while it is open."""
     if words[0] == "End":
-        return -1
+        return END
     if (words[0] == "ROOT") != (not joints) or (words[0] == "JOINT" and not open_joints):
         raise InputError(where, expected="one ROOT, and JOINTs inside it", got=" ".join(words))
     name = " ".join(words[1:])
@@ -113,9 +116,11 @@ def _opened(joints: list[_Joint], open_joints: list[int], words: list[str], wher
 
 def _described(joints: list[_Joint], open_joints: list[int], words: list[str], where: str) -> None:
     """OFFSET and CHANNELS of the innermost joint."""
-    if not open_joints:
-        raise InputError(where, expected="a joint before it", got=words[0])
-    inside_end = open_joints[-1] < 0
+    if words[0] not in ("OFFSET", "CHANNELS") or not open_joints:
+        raise InputError(
+            where, expected="ROOT, then JOINT, End Site, OFFSET, CHANNELS or a brace", got=repr(" ".join(words)[:40])
+        )
+    inside_end = open_joints[-1] == END
     joint = joints[open_joints[-2] if inside_end else open_joints[-1]]
     if words[0] == "OFFSET":
         offset = numbers(words[1:], f"{where}: OFFSET of {joint.name}", 3)
@@ -167,7 +172,7 @@ def _recording(joints: list[_Joint], frames: np.ndarray, interval: float) -> Rec
         channels = np.array(joint.channels, dtype=int)
         own = frames[:, column : column + len(channels)]
         column += len(channels)
-        rotations[:, index] = turns(channels[channels >= 3] - 3, np.radians(own[:, channels >= 3]))
+        rotations[:, index] = turns([int(c) - 3 for c in channels if c >= 3], np.radians(own[:, channels >= 3]))
         if index == 0:
             root_places[:, channels[channels < 3]] = own[:, channels < 3]
     offsets = np.array([joint.offset for joint in joints])

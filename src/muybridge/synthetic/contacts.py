@@ -8,7 +8,7 @@ and down a little with its feet, as far as their corrections agree and the legs 
 from __future__ import annotations
 
 import numpy as np
-from scipy.ndimage import gaussian_filter1d, maximum_filter1d
+from scipy.ndimage import gaussian_filter1d, maximum_filter1d, minimum_filter1d
 
 from muybridge.synthetic.angles import smooth_step
 from muybridge.synthetic.limbs import SIDES, STRETCHED, leg_length, reach
@@ -19,8 +19,9 @@ from muybridge.synthetic.skinning import Figure
 LOW, SLOW = (0.03, 0.06), (0.5, 1.0)
 #: Seconds: spells shorter than this are none; standard deviations for corrections of feet and of the body.
 SHORTEST, FEET, BODY = 0.06, 0.015, 0.1
-#: Percentile of the lower sole's height that is the floor: most people stand on it most of the time.
-FLOOR = 10.0
+#: Percentile of the lower sole's height that is the floor: most people stand on it most of the time. Other legs, on a
+#: floor that was not quite level, come down elsewhere: metres by which the floor may differ, seconds in which it does.
+FLOOR, UNEVEN, STRETCH = 10.0, 0.06, 1.2
 
 
 def settle(figure: Figure, worlds: np.ndarray, places: np.ndarray, rate: float) -> None:
@@ -32,15 +33,22 @@ def settle(figure: Figure, worlds: np.ndarray, places: np.ndarray, rate: float) 
     rate : frames per second
     """
     soles = np.stack([sole(figure, worlds, places, side) for side in SIDES], axis=1)
-    level = np.percentile(soles[..., 2].min(axis=(1, 2)), FLOOR)
-    places[..., 2] -= level
-    soles[..., 2] -= level
+    level = floor_level(soles[..., 2].min(axis=(1, 2)), rate)
+    places[..., 2] -= level[:, None]
+    soles[..., 2] -= level[:, None, None]
     fixes = np.stack([correction(soles[:, foot], rate) for foot in (0, 1)], axis=1)
     ankles = [places[:, figure.bone(f"{side}_foot")] + fixes[:, foot] for foot, side in enumerate(SIDES)]
     places[..., 2] += gaussian_filter1d(fixes[..., 2].mean(axis=1), BODY * rate, mode="nearest")[:, None]
     places[..., 2] -= _out_of_reach(figure, places, ankles, rate)[:, None]
     for side, target in zip(SIDES, ankles, strict=True):
         reach(figure, worlds, places, side, target)
+
+
+def floor_level(lowest: np.ndarray, rate: float) -> np.ndarray:
+    """(T,) metres: the floor's height under the body, from that of the lower sole (T,)."""
+    usual = np.percentile(lowest, FLOOR)
+    near = minimum_filter1d(lowest, 2 * round(0.5 * STRETCH * rate) + 1, mode="nearest")
+    return usual + gaussian_filter1d(np.clip(near - usual, -UNEVEN, UNEVEN), 0.3 * STRETCH * rate, mode="nearest")
 
 
 def correction(soles: np.ndarray, rate: float) -> np.ndarray:
@@ -84,7 +92,7 @@ def _bridge(fix: np.ndarray, inside: np.ndarray) -> None:
     if not len(known):
         return
     for t in np.flatnonzero(~inside):
-        after = np.searchsorted(known, t)
+        after = int(np.searchsorted(known, t))
         first, last = known[max(after - 1, 0)], known[min(after, len(known) - 1)]
         share = smooth_step(np.array((t - first) / (last - first))) if last > first else 0.0
         fix[t] = fix[first] + share * (fix[last] - fix[first])

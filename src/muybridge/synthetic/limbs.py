@@ -8,7 +8,7 @@ from muybridge.synthetic.skinning import FORWARD, Figure
 
 SIDES = ("left", "right")
 #: Share of the leg's length from which on a straightening leg gives way, so that a knee never snaps.
-STRETCHED = 0.985
+STRETCHED = 0.995
 
 
 def leg_length(figure: Figure) -> float:

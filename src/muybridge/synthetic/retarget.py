@@ -50,7 +50,7 @@ def retarget(figure: Figure, recording: Recording, where: str) -> tuple[np.ndarr
 
 
 def corrections(skeleton: Skeleton, bones: dict[str, int], turned: np.ndarray) -> dict[str, np.ndarray]:
-    """Bone -> (3, 3): from the figure's neutral posture to the recording's rest posture; turned: (T, B, 3, 3), world."""
+    """Bone -> (3, 3): from the figure's neutral posture to the recording's rest; turned: (T, B, 3, 3), world."""
     axes = rest_axes(skeleton, bones)
     fixed = dict.fromkeys(("pelvis", "thorax", "head", "left_clavicle", "right_clavicle"), axes)
     for side in SIDES:
@@ -70,7 +70,7 @@ def corrections(skeleton: Skeleton, bones: dict[str, int], turned: np.ndarray) -
 
 
 def rest_axes(skeleton: Skeleton, bones: dict[str, int]) -> np.ndarray:
-    """(3, 3): front, left and up of the recording's rest posture, in columns, along the world's axes if they nearly are."""
+    """(3, 3): columns: front, left and up of the recording's rest posture, along the world's axes if nearly so."""
     rest = skeleton.rest_places
     across = rest[bones["left_thigh"]] - rest[bones["right_thigh"]]
     up = rest[bones["head"]] - 0.5 * (rest[bones["left_thigh"]] + rest[bones["right_thigh"]])
@@ -141,7 +141,7 @@ def _hand(skeleton: Skeleton, bones: dict[str, int], side: str, axes: np.ndarray
 
 
 def _foot(skeleton: Skeleton, bones: dict[str, int], side: str, axes: np.ndarray, turned: np.ndarray) -> np.ndarray:
-    """Soles lie flat in the rest posture, or are square to a leg held outward: whichever is flatter when feet are still."""
+    """Soles lie flat at rest, or are square to a leg held outward: whichever is flatter while feet are still."""
     rest, foot = skeleton.rest_places, bones[f"{side}_foot"]
     leg = rest[foot] - rest[bones[f"{side}_thigh"]]
     still = np.linalg.norm(np.diff(turned[:, foot], axis=0, prepend=turned[:1, foot]), axis=(1, 2))
