@@ -83,16 +83,17 @@ def punch(rng: np.random.Generator, motion: Motion) -> tuple[Angles, np.ndarray]
     sign = 1.0 if lead == "left" else -1.0
     phase = rng.uniform() + 0.8 * motion.cadence * motion.times
     thrust = {lead: _thrust(phase), rear: _thrust(phase - 0.45)}
-    for side in SIDES:
-        out, inward = thrust[side] * min(motion.vigour, 1.1), -1.0 if side == "left" else 1.0
-        add(angles, f"{side}_clavicle", 0.0, 6.0 * out, 10.0 * out * inward)
-        add(angles, f"{side}_upper_arm", 28.0 + 54.0 * out, 4.0 - 6.0 * out, inward * 12.0 * out)
-        add(angles, f"{side}_forearm", 122.0 - 112.0 * out, 0.0, inward * 10.0 * (1.0 - out))
     twist = sign * 15.0 * (thrust[rear] - 0.8 * thrust[lead])
     add(angles, "pelvis", -5.0, 0.0, 0.3 * twist - 14.0 * sign)
     add(angles, "abdomen", -6.0, 0.0, 0.5 * twist)
     add(angles, "thorax", -4.0, 0.0, 0.6 * twist)
     add(angles, "neck", 4.0, 0.0, 14.0 * sign - 0.8 * twist)
+    for side, inward in (("left", -1.0), ("right", 1.0)):
+        out = thrust[side] * min(motion.vigour, 1.1)
+        turned = 1.4 * twist - 14.0 * sign + 10.0 * inward  # of trunk and clavicle; the fist goes straight ahead
+        add(angles, f"{side}_clavicle", 0.0, 6.0 * out, 10.0 * out * inward)
+        add(angles, f"{side}_upper_arm", 28.0 + 54.0 * out, 4.0 - 6.0 * out, -turned * out)
+        add(angles, f"{side}_forearm", 122.0 - 112.0 * out, 0.0, inward * 10.0 * (1.0 - out))
     for side, ahead in ((lead, 1.0), (rear, -1.0)):
         add(angles, f"{side}_thigh", 14.0 + 10.0 * ahead, 5.0)
         add(angles, f"{side}_shank", -28.0)

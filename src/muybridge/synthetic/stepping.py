@@ -40,7 +40,7 @@ class Steps:
     turn_rate : radians per second, to the left
     apart : metres from the path to the footprints of each foot, outward
     ahead : metres, how far forward of its hip the ankle is put, at the middle of its bearing
-    lift : metres, how high a ball of the foot is carried
+    lift : metres, how high the sole is carried at the middle of a swing
     pitch : (phase of the foot's stride, degrees) pairs: how far the heel is up
     flight : whether there are times when no foot bears, and the body falls freely
     rises : flights per stride
@@ -133,7 +133,7 @@ def _footfall(
     bone, toes = figure.bone(f"{side}_foot"), figure.bone(f"{side}_toes")
     worlds[:, bone] = about(2, course) @ about(1, pitch)
     worlds[:, toes] = about(2, course) @ about(1, pitch * (1.0 - flat) + np.clip(pitch - 0.8, 0.0, None) * flat)
-    lifted = steps.lift * swing**2 * (1.0 - swing) ** 3 / (0.4**2 * 0.6**3)
+    lifted = 16.0 * steps.lift * (swing * (1.0 - swing)) ** 2
     return np.column_stack([place, lifted]) - _lowest(figure, worlds, side)
 
 
