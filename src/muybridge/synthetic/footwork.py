@@ -18,19 +18,19 @@ LEG = 0.88
 
 
 def jog(rng: np.random.Generator, motion: Motion, leg: float) -> tuple[Angles, Steps]:
-    """An easy run, about 2 m/s and 2.7 steps a second at the default cadence: each foot bears 36 % of the stride."""
+    """An easy run, about 2 m/s and 2.7 steps a second at the default cadence: each foot bears 33 % of the stride."""
     rate, begin = 1.5 * motion.cadence * np.sqrt(LEG / leg), rng.uniform()
     speed = 2.0 * motion.vigour * rng.uniform(0.92, 1.08) * leg / LEG
     steps = Steps(
         rate,
         begin,
-        bears=(0.36, 0.36),
+        bears=(0.33, 0.33),
         speed=speed,
         turn_rate=motion.turn_rate,
         apart=0.05 * leg / LEG,
         ahead=-0.02,
-        lift=rng.uniform(0.14, 0.19) * leg / LEG,
-        pitch=((0.0, 2.0), (0.12, 0.0), (0.2, 4.0), (0.36, 38.0), (0.55, 88.0), (0.68, 74.0), (0.88, 12.0)),
+        lift=rng.uniform(0.10, 0.13) * leg / LEG,
+        pitch=((0.0, 2.0), (0.1, 0.0), (0.18, 4.0), (0.33, 38.0), (0.54, 92.0), (0.68, 70.0), (0.86, 12.0)),
         flight=True,
     )
     angles = standing(rng, motion)
