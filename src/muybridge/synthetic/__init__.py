@@ -4,7 +4,15 @@
 `scene`           `Scene`, `Person`, `demo_scene(seed)`, `render(scene, frame)`, `empty(scene, n)`, `truth(scene)`
 `write`           `write_scene(scene, folder)`: videos, empty room, masks, calibration, truth, measures, job
 `skinning`        `load_figure(name)`: the baked people; bones, linear blend skinning, the 15 joints
-`motion`          `Motion`, `perform(figure, motion)`: walk, wave, crouch
+`motion`          `Motion`, `Recorded`, `perform(figure, motion)`: what a figure does, made or recorded
+`clip`            `Motion`: what may be done and how; `Track`: what then was
+`gaits`           walk, wave, crouch, punch: joint angles over time; `angles` turns bones by them
+`planting`        feet on the floor that hardly slip, for motions told by angles
+`footwork`        jog, hop, jump, turn, sidestep: told by where the feet go
+`stepping`        footprints, free fall between them, and legs (`limbs`) that reach them
+`recorded`        `Recorded`: a motion file, cut, resampled, placed
+`retarget`        a recording's motion on a figure's bones; `bone_names`: which is which
+`contacts`        feet of a recording: on the floor where they bear
 `rigs`            `ring`, `looking_at`: where cameras stand
 `rasterise`       `draw(camera, mesh ...)`: z-buffer, solid textures, Lambert shading
 `room`            `Room`, `picture(room, camera)`: floor, walls, their light
