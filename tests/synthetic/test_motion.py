@@ -31,6 +31,11 @@ class TestErrors:
         with pytest.raises(InputError, match=f"motion: {name}"):
             Motion(**{name: value})
 
+    @pytest.mark.parametrize("values", [{"kind": "jump", "cadence": 0.3}, {"kind": "jog", "vigour": 4.0}])
+    def test_more_than_legs_can_do(self, values):
+        with pytest.raises(InputError, match=r"cadence and vigour: .* got hips 0\.\d+ m .*; raise cadence"):
+            perform(FIGURE, Motion(**values))
+
 
 @pytest.mark.parametrize("kind", KINDS)
 class TestEvery:

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.interpolate import PchipInterpolator
 
+from muybridge.errors import InputError
 from muybridge.synthetic.angles import about, smooth_step
 from muybridge.synthetic.limbs import SIDES, leg_length, reach
 from muybridge.synthetic.planting import foot_points
@@ -22,6 +23,8 @@ from muybridge.synthetic.skinning import Figure
 GRAVITY = 9.81
 #: Share of the leg's length within which a bearing foot stays from its hip, so that a knee is never locked.
 EXTENDED = 0.97
+#: Share of the leg's length below which hips do not come.
+CROUCHED = 0.5
 
 Keys = tuple[tuple[float, float], ...]
 
@@ -106,7 +109,9 @@ def step(
     places[..., :2] += path_at(steps, times - middle, heading)[:, None]
     used = [foot for foot in (0, 1) if steps.bears[foot] > 0]
     ankles = {foot: _footfall(figure, worlds, steps, foot, times, heading) for foot in used}
-    places[..., 2] += (height + _base_height(figure, places, steps, times, height, ankles))[:, None]
+    height += _base_height(figure, places, steps, times, height, ankles)
+    _check_height(figure, height)
+    places[..., 2] += height[:, None]
     for foot in used:
         reach(figure, worlds, places, SIDES[foot], ankles[foot])
 
@@ -182,6 +187,17 @@ def _base_height(
         allowed = target[:, 2] + np.sqrt(np.maximum(length**2 - flat**2, 0.0)) - hip[:, 2] - height
         room.append(allowed[bearing])
     return float(np.concatenate(room).min())
+
+
+def _check_height(figure: Figure, height: np.ndarray) -> None:
+    """Steps too long and falls too deep for the legs would take the hips (T,) metres down to the floor."""
+    if height.min() < CROUCHED * leg_length(figure):
+        raise InputError(
+            "motion: cadence and vigour",
+            expected="steps and leaps that legs can make",
+            got=f"hips {max(height.min(), 0.0):.2f} m over the floor",
+            remedy="raise cadence or lower vigour",
+        )
 
 
 def _curve(keys: Keys, phase: np.ndarray) -> np.ndarray:
