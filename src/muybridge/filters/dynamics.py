@@ -256,8 +256,8 @@ class NearlyConstantVelocity(ConstantVelocity):
         )
         moved_cross = gain * cross + gain**2 * speeds + q / 2
         mean = reflect((belief.mean + gain * belief.velocity)[None], self.lower, self.upper)[0]
-        return Belief(mean, covariance, gain * belief.velocity, moved_cross, gain**2 * speeds + q,
-                      np.linalg.solve(covariance, moved_cross).T)  # fmt: skip
+        velocity_gain: FloatArray = np.linalg.solve(covariance, moved_cross).T.astype(np.float64)
+        return Belief(mean, covariance, gain * belief.velocity, moved_cross, gain**2 * speeds + q, velocity_gain)
 
 
 def checked_limits(lower: FloatArray | None, upper: FloatArray | None, size: int) -> tuple[FloatArray, FloatArray]:

@@ -111,7 +111,6 @@ class Config(CommonConfig):
     estimate: Literal["mean", "maximum"] = "mean"
     spreads: tuple[float, ...] = (0.2, 0.13, 0.085, 0.06, 0.045, 0.035, 0.03, 0.025)  # metres, one a step, falling
     dependence: float = 5.0  # kappa
-    inflation: float = 3.0  # particles are drawn so much wider than the filter itself believes
     blocks: tuple[tuple[int, ...], ...] = ()  # components that are drawn anew together; empty: never
     redraws: int = 100  # likelihood evaluations spent on each
     tries: int = 4  # of a block's best redraws, so many are climbed from
@@ -129,7 +128,6 @@ class Config(CommonConfig):
         require("redraws", self.redraws >= 0, "0 or more", self.redraws)
         require("tries", self.tries >= 1, "1 or more", self.tries)
         require("dependence", self.dependence > 0, "above 0", self.dependence)
-        require("inflation", self.inflation > 0, "above 0", self.inflation)
         require(
             "weighting",
             self.weighting in ("laplace", "likelihood", "importance"),
@@ -187,7 +185,7 @@ def step(
     precision = peak.seen.curvature / config.dependence + peak.prior.precision
     standard = rng.standard_normal((config.particles, mode.size))
     standard[0] = 0.0  # the mode itself is always among them
-    deviations = config.inflation * np.linalg.solve(np.linalg.cholesky(precision).T, standard.T).T
+    deviations = np.linalg.solve(np.linalg.cholesky(precision).T, standard.T).T
     particles = reflect(mode + deviations, dynamics.lower, dynamics.upper)
     log_likelihoods = counted.log_prob(particles)
     log_weights = _log_weights(particles, log_likelihoods, standard, peak.prior, config)
@@ -215,7 +213,7 @@ class _Prior:
         span = dynamics.upper - dynamics.lower
         known = np.where(np.isfinite(span), 12.0 / np.maximum(span, 1e-6) ** 2, 1e-9)  # of a uniform density
         usual = dynamics.usual_sd**-2.0
-        self.precision: FloatArray = np.linalg.inv(belief.covariance) + np.diag(known + usual)
+        self.precision: FloatArray = np.linalg.inv(belief.covariance).astype(np.float64) + np.diag(known + usual)
         towards = np.linalg.solve(self.precision, usual * (dynamics.usual - belief.mean))
         self.mean: FloatArray = np.clip(belief.mean + towards, dynamics.lower, dynamics.upper)
 

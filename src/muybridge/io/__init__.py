@@ -9,6 +9,9 @@
 `run_folder`           `joints.csv`, `pose.csv`, `run.json`
 `run_log`              the log that `--resume` continues from
 `job`                  the job file: cameras, calibration, body, filter, settings
+`skeleton`             `Skeleton`, `Recording`: bones and how they turn, whatever the file
+`asf_amc`              `read_amc`: Acclaim's skeletons and motion, as CMU publishes them
+`bvh`                  `read_bvh`: Biovision's
 `trc`                  marker tables for OpenSim and its kin
 `disk`                 `disk_errors`, `replace_file`: a full disk is one line; whole files or none
 `prefetch`             `prefetched`: decode ahead in a thread

@@ -15,7 +15,7 @@ import numpy as np
 
 from muybridge.cameras.model import Rig
 from muybridge.errors import InputError
-from muybridge.synthetic.motion import Motion, Track, perform
+from muybridge.synthetic.motion import Motion, Recorded, Track, perform
 from muybridge.synthetic.rasterise import LIGHT, Cloth, Layer, draw
 from muybridge.synthetic.rigs import ring
 from muybridge.synthetic.room import Room, picture
@@ -80,7 +80,7 @@ class Person:
     """
 
     figure: str = "man"
-    motion: Motion = field(default_factory=Motion)
+    motion: Motion | Recorded = field(default_factory=Motion)
     outfit: tuple[Garment, ...] = DEMO_OUTFIT
 
 

@@ -231,16 +231,16 @@ class Figure:
         )
         hinge = np.cross(directions[0], directions[1])
         for bone, direction in zip((upper, lower, hand), directions, strict=True):
-            turns[bone] = _turn_between((direction, hinge), (DOWN, np.array([0.0, -1.0, 0.0])))
+            turns[bone] = turn_between((direction, hinge), (DOWN, np.array([0.0, -1.0, 0.0])))
 
     def _straighten_leg(self, turns: np.ndarray, side: str) -> None:
         """Thigh and shank down, the foot flat and pointing forward, a little outwards."""
         thigh, shank, foot, toes = (self.bone(f"{side}_{part}") for part in ("thigh", "shank", "foot", "toes"))
-        turns[thigh] = _turn_between((self.heads[shank] - self.heads[thigh], FORWARD), (DOWN, FORWARD))
-        turns[shank] = _turn_between((self.heads[foot] - self.heads[shank], FORWARD), (DOWN, FORWARD))
+        turns[thigh] = turn_between((self.heads[shank] - self.heads[thigh], FORWARD), (DOWN, FORWARD))
+        turns[shank] = turn_between((self.heads[foot] - self.heads[shank], FORWARD), (DOWN, FORWARD))
         along = (self.heads[toes] - self.heads[foot]) * (1.0, 1.0, 0.0)
         out = np.radians(6.0 if side == "left" else -6.0)
-        turns[foot] = _turn_between((DOWN, along), (DOWN, np.array([np.cos(out), np.sin(out), 0.0])))
+        turns[foot] = turn_between((DOWN, along), (DOWN, np.array([np.cos(out), np.sin(out), 0.0])))
         turns[toes] = turns[foot]
 
 
@@ -256,7 +256,7 @@ def load_figure(name: str, cut: str | None = None, hair: str | None = None) -> F
     return Figure(**read_figure(name, cut, hair))
 
 
-def _turn_between(source: tuple[np.ndarray, np.ndarray], target: tuple[np.ndarray, np.ndarray]) -> np.ndarray:
+def turn_between(source: tuple[np.ndarray, np.ndarray], target: tuple[np.ndarray, np.ndarray]) -> np.ndarray:
     """The rotation that takes source[0] to target[0] and source[1] as near to target[1] as it can."""
     return _basis(*target) @ _basis(*source).T
 
