@@ -45,8 +45,8 @@ def composite(background, coverage, colours, depth, visible):
 def mark_parts(pixels, inverse_depth, faces, face_parts, marks):
     """Set bit `face_parts[f]` of every pixel whose centre face f covers, whatever lies before it.
 
-    pixels (V, 2) and inverse_depth (V,) float64, faces (F, 3) int32, face_parts (F,) int32 in 0-31; marks (H, W) uint32.
-    A face with a corner that has no pixel (NaN) or lies behind is left out, as `rasterise.fill_triangles` does.
+    pixels (V, 2) and inverse_depth (V,) float64, faces (F, 3) int32, face_parts (F,) int32, marks (H, W) uint32. A
+    face with a corner that has no pixel (NaN) or lies behind is left out, as `rasterise.fill_triangles` does.
     """
     height, width = marks.shape
     for face in range(faces.shape[0]):

@@ -14,7 +14,9 @@ from muybridge.errors import InputError
 from muybridge.synthetic.rasterise import LIGHT
 
 Vector = tuple[float, float, float]
-LOWEST = 0.3  # the least elevation, as z over length: a lower lamp would throw shadows up the walls, which are not drawn
+LOWEST = (
+    0.3  # the least elevation, as z over length: a lower lamp would throw shadows up the walls, which are not drawn
+)
 
 
 @dataclass(frozen=True)

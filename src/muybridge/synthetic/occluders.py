@@ -68,6 +68,21 @@ class Occluder:
         return found
 
 
+def hides(thing: Occluder, eye: np.ndarray, points: np.ndarray) -> np.ndarray:
+    """(...) bool: whether the line from the eye (3,) to each of points (..., 3), metres, passes through the thing."""
+    cosine, sine = np.cos(thing.turn), np.sin(thing.turn)
+    own = np.array([[cosine, -sine, 0], [sine, cosine, 0], [0, 0, 1.0]])
+    start = (np.asarray(eye) - (*thing.place, 0.0)) @ own
+    way = (np.asarray(points) - (*thing.place, 0.0)) @ own - start
+    found = np.zeros(way.shape[:-1], dtype=bool)
+    for middle, size in thing.boxes():
+        with np.errstate(divide="ignore", invalid="ignore"):
+            sides = np.stack([(middle - size / 2 - start) / way, (middle + size / 2 - start) / way])
+        enters, leaves = sides.min(axis=0).max(axis=-1), sides.max(axis=0).min(axis=-1)
+        found |= (enters < leaves) & (leaves > 0) & (enters < 1)
+    return found
+
+
 def cloth_of(rng: np.random.Generator, occluders: Sequence[Occluder]) -> Cloth:
     """Their surfaces, one label each."""
     tiles = np.stack([solid(rng, thing.pattern, thing.colour, thing.second) for thing in occluders])
@@ -75,7 +90,7 @@ def cloth_of(rng: np.random.Generator, occluders: Sequence[Occluder]) -> Cloth:
 
 
 def mesh_of(occluders: Sequence[Occluder], cell: float = CELL) -> Mesh:
-    """All of them as one mesh of squares no larger than `cell`, metres; a face's part and label is its thing's index."""
+    """All of them as one mesh of squares up to `cell`, metres; a face's part and label is its thing's index."""
     pieces = [
         (*_placed(thing, *_side(middle, size, normal, cell), normal), index)
         for index, thing in enumerate(occluders)

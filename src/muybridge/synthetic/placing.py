@@ -56,7 +56,7 @@ def side_camera(
     middle = 0.5 * (low + high)
     outward = side * np.array([-np.sin(heading), np.cos(heading)])
     place = np.array([*(middle[:2] + distance * outward), height])
-    # Off the middle in pixels grows with the focal length but for the lens: found on a lens-free camera, then shortened.
+    # Without the lens, pixels from the middle grow with the focal length; a barrel lens only brings them nearer.
     probe = looking_at("cam1", place, middle, focal=1.0, size=size)
     points = probe.world_to_camera(joints)
     if not (points[..., 2] > 0.5).all():

@@ -1,4 +1,4 @@
-"""The empty room: a box with a floor of planks, tiles or carpet, painted walls with pictures and a door, and its light."""
+"""The empty room: a box with a floor of planks, tiles or carpet, painted walls with pictures, a door, and its light."""
 
 from __future__ import annotations
 

@@ -63,9 +63,7 @@ class Sensor:
         return time + (np.arange(height) / height - 0.5) * self.readout / rate
 
 
-def exposed(
-    colours: np.ndarray, gain: np.ndarray | np.float32, noise: float, rng: np.random.Generator
-) -> np.ndarray:
+def exposed(colours: np.ndarray, gain: np.ndarray | np.float32, noise: float, rng: np.random.Generator) -> np.ndarray:
     """A picture in 8 bits, with a sensor's noise: its variance grows with the light, plus a floor.
 
     Parameters
