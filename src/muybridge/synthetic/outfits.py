@@ -25,6 +25,7 @@ BARE: Outfit = (
     Garment("skin", "plain", (150, 176, 220), tile=0.5),
     Garment("hair", "denim", (42, 58, 84), tile=0.25),
     Garment("eyes", "plain", (90, 90, 90)),
+    Garment("soles", "plain", (70, 74, 78)),
 )
 OUTFITS: dict[str, Outfit] = {
     "striped": (
