@@ -14,12 +14,17 @@ def composite(background, coverage, colours, depth, visible):
     """Lay L layers over a picture, at each pixel the nearest in front.
 
     background (h, w, 3) float32 is changed; coverage and depth (L, h, w) and colours (L, h, w, 3) float32, colours
-    premultiplied; visible (L, h, w) float32 takes the coverage that is left of each layer behind the nearer ones.
+    premultiplied; visible (L, h, w) float32, of zeros, takes what is left of each coverage behind the nearer layers.
     """
     count, height, width = coverage.shape
     order = np.empty(count, dtype=np.int64)
     for y in range(height):
         for x in range(width):
+            most = np.float32(0.0)
+            for index in range(count):
+                most = max(most, coverage[index, y, x])
+            if most == np.float32(0.0):
+                continue
             for index in range(count):
                 slot = index
                 while slot > 0 and depth[order[slot - 1], y, x] > depth[index, y, x]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -15,6 +16,9 @@ from muybridge.synthetic.outfits import OUTFITS, Outfit
 from muybridge.synthetic.room import Room
 from muybridge.synthetic.sensor import Sensor
 
+if TYPE_CHECKING:
+    from muybridge.synthetic.recorded import Recorded
+
 
 @dataclass(frozen=True)
 class Person:
@@ -23,13 +27,13 @@ class Person:
     Parameters
     ----------
     figure : a baked person, such as "man" or "woman"
-    motion : what is done
+    motion : what is done, a `Motion` or a recorded one
     outfit : garments; together with BARE they cover every label of the figure
     looseness : metres, how far the clothes stand off the body
     """
 
     figure: str = "man"
-    motion: Motion = field(default_factory=Motion)
+    motion: Motion | Recorded = field(default_factory=Motion)
     outfit: Outfit = OUTFITS["striped"]
     looseness: float = 0.0
 

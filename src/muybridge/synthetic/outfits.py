@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from muybridge.errors import InputError
-from muybridge.synthetic.textures import Colour
+from muybridge.synthetic.textures import PATTERNS, Colour
 
 
 @dataclass(frozen=True)
@@ -17,6 +17,10 @@ class Garment:
     colour: Colour
     second: Colour = (0, 0, 0)
     tile: float = 0.3
+
+    def __post_init__(self) -> None:
+        if self.pattern not in PATTERNS:
+            raise InputError("cloth: pattern", expected=f"one of {', '.join(PATTERNS)}", got=repr(self.pattern))
 
 
 Outfit = tuple[Garment, ...]

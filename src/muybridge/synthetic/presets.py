@@ -12,9 +12,10 @@ The seed decides who it is, what is worn, how and where they move, where the cam
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from importlib import resources
-from typing import Literal, TypeVar
+from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
 import numpy as np
 
@@ -30,9 +31,13 @@ from muybridge.synthetic.room import Room
 from muybridge.synthetic.sensor import Sensor
 from muybridge.synthetic.skinning import Figure, load_figure
 
+if TYPE_CHECKING:
+    from muybridge.synthetic.recorded import Recorded
+
 View = Literal["ring", "side"]
 Named = TypeVar("Named")
 TRIES = 200
+FRAMES = (2, 100_000)  # the least and the most of a clip
 MOST_CAMERAS = 8
 RADIUS = 3.9  # metres from the middle of the room to the cameras; up to twice that for ways that need it
 SIDE_DISTANCE = 4.6
@@ -101,7 +106,8 @@ def preset_scene(
     *,
     seed: int,
     figure: str | None = None,
-    motion: Motion | str | None = None,
+    motion: Motion | Recorded | str | None = None,
+    details: Mapping[str, Any] | None = None,
     cameras: int | None = None,
     view: View = "ring",
     room: str | None = None,
@@ -118,6 +124,7 @@ def preset_scene(
     seed : decides all that is not given
     figure, outfit_name, room : who, what is worn, where (names)
     motion : what is done: a kind, or a whole motion, which then stays where it says
+    details : fields of `Motion` that are not the seed's to decide, with a kind
     cameras : 1 to 8 in a ring, 3 where absent; the side view has one
     view : "ring", or "side": one camera at right angles to the way walked, which is straight
     duration, rate : seconds, frames per second; a whole motion has its own
@@ -131,7 +138,9 @@ def preset_scene(
     worn = [name for name in kind.outfits if room_name != "bluescreen" or name in BLUESCREEN_OUTFITS]
     who = str(rng.choice(figure_names()))
     who, clothes = figure or who, outfit(outfit_name or str(rng.choice(worn)))
-    draft = _Draft(kind, motion, view, cameras or 3, duration or kind.duration, rate or kind.rate, seed, rig)
+    draft = _Draft(
+        kind, motion, view, cameras or 3, duration or kind.duration, rate or kind.rate, seed, rig, details or {}
+    )
     done, rig, half_width = _placed(rng, load_figure(who), draft, surroundings.half_width)
     scene = Scene(
         rig, Person(who, done, clothes), replace(surroundings, half_width=half_width), noise=kind.noise,
@@ -151,16 +160,26 @@ class _Draft:
     """What is asked for, as far as it decides where people and cameras go."""
 
     preset: Preset
-    motion: Motion | str | None
+    motion: Motion | Recorded | str | None
     view: View
     cameras: int
     duration: float
     rate: float
     seed: int
     rig: Rig | None
+    details: Mapping[str, Any] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        if self.motion is None or isinstance(self.motion, str):
+            frames = self.duration * self.rate
+            if not FRAMES[0] <= frames <= FRAMES[1]:
+                raise InputError("scene: duration x rate", expected=f"{FRAMES[0]} to {FRAMES[1]} frames",
+                                 got=f"{frames:g}")  # fmt: skip
 
 
-def _placed(rng: np.random.Generator, figure: Figure, draft: _Draft, half_width: float) -> tuple[Motion, Rig, float]:
+def _placed(
+    rng: np.random.Generator, figure: Figure, draft: _Draft, half_width: float
+) -> tuple[Motion | Recorded, Rig, float]:
     """A motion and cameras that see it whole; ways that need it get cameras further off, in a larger room."""
     for number in range(TRIES):
         wider = 1.0 + max(0.0, 2 * number / TRIES - 0.5)
@@ -178,7 +197,7 @@ def _placed(rng: np.random.Generator, figure: Figure, draft: _Draft, half_width:
                      remedy="make it shorter, slower or on the spot, or place the cameras yourself")  # fmt: skip
 
 
-def _motion(rng: np.random.Generator, draft: _Draft) -> Motion:
+def _motion(rng: np.random.Generator, draft: _Draft) -> Motion | Recorded:
     kind = draft.motion or "walk"
     heading, turn = rng.uniform(-np.pi, np.pi), float(rng.choice([-1.0, 1.0]))
     slow, fast = TURNS.get(kind, (0.0, 0.0)) if isinstance(kind, str) else (0.0, 0.0)
@@ -190,13 +209,11 @@ def _motion(rng: np.random.Generator, draft: _Draft) -> Motion:
         cadence = cadence / 0.86 * Motion.cadence
     if draft.view == "side":
         turn = 0.0
-    return Motion(
-        kind, draft.duration, draft.rate, heading=heading, turn_rate=turn, cadence=cadence, vigour=vigour,
-        seed=draft.seed,
-    )  # fmt: skip
+    drawn = {"heading": heading, "turn_rate": turn, "cadence": cadence, "vigour": vigour, "seed": draft.seed}
+    return Motion(kind, draft.duration, draft.rate, **{**drawn, **draft.details})
 
 
-def _rig(rng: np.random.Generator, draft: _Draft, motion: Motion, joints: np.ndarray, wider: float) -> Rig:
+def _rig(rng: np.random.Generator, draft: _Draft, motion: Motion | Recorded, joints: np.ndarray, wider: float) -> Rig:
     if draft.view == "ring":
         return ring(rng, draft.cameras, radius=draft.preset.radius * wider)
     lens = np.array([-0.10, 0.04, 0.0, 0.0, 0.0]) * rng.uniform(0.7, 1.1)
@@ -207,7 +224,7 @@ def _rig(rng: np.random.Generator, draft: _Draft, motion: Motion, joints: np.nda
     return Rig((camera,))
 
 
-def _direction(motion: Motion, joints: np.ndarray) -> float:
+def _direction(motion: Motion | Recorded, joints: np.ndarray) -> float:
     """Radians: the way that is walked; of somebody who stays, where they face."""
     way = joints[-1, 0, :2] - joints[0, 0, :2]
     return float(np.arctan2(way[1], way[0])) if np.linalg.norm(way) > 0.5 else motion.heading
@@ -225,7 +242,7 @@ def _named(what: str, known: dict[str, Named], name: str) -> Named:
     return known[name]
 
 
-def _check(seed: int, cameras: int | None, view: str, motion: Motion | str | None, rig: Rig | None) -> None:
+def _check(seed: int, cameras: int | None, view: str, motion: Motion | Recorded | str | None, rig: Rig | None) -> None:
     if seed < 0:
         raise InputError("scene: seed", expected="0 or more", got=str(seed))
     if view not in ("ring", "side"):

@@ -10,7 +10,7 @@ import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -37,6 +37,12 @@ from muybridge.synthetic.scene_tables import (
     given,
 )
 from muybridge.synthetic.skinning import load_figure
+
+if TYPE_CHECKING:
+    from muybridge.synthetic.recorded import Recorded
+
+MADE = ("turn_rate", "cadence", "vigour", "seed", "heading", "place")
+"""Keys of [motion] that are fields of `Motion`."""
 
 
 def read(path: Path | str, overrides: Sequence[str] = ()) -> Scene:
@@ -66,6 +72,7 @@ def from_table(
     tables: dict[str, Any] = _tables.copied(table)
     for text in overrides:
         _tables.override(tables, text)
+    _check_finite(tables, source, "")
     return scene_of(_tables.convert(tables, SceneTable, Path(folder).absolute(), source))
 
 
@@ -96,12 +103,15 @@ def _base(table: SceneTable) -> Scene:
     rig = _rig(table.camera) if table.camera else None
     if table.camera is not None and not table.camera:
         raise InputError("scene: camera", expected="at least one camera", got="none")
-    motion = None if table.motion is None else _motion(table.motion, table)
+    action = table.motion or MotionTable()
+    preset = PRESETS.get(table.preset)
+    rate = table.rate or (preset.rate if preset else 30.0)
     return preset_scene(
         table.preset,
         seed=table.seed,
         figure=table.person.figure,
-        motion=motion,
+        motion=action.kind if action.file is None else _recorded(action, rate, table.duration),
+        details=given(action, only=MADE),
         cameras=table.cameras,
         view=table.view or "ring",
         room=table.room.kind,
@@ -130,36 +140,39 @@ def _camera(row: CameraTable, number: int) -> Camera:
     return looking_at(name, place, target, focal=focal, size=row.size, distortion=lens)
 
 
-def _motion(row: MotionTable, table: SceneTable) -> Motion | str:
-    """What is done; a mere kind is left to the preset, which places it."""
-    if row.file is not None:
-        raise InputError("motion: file", expected="one of the kinds of motion", got=str(row.file),
-                         remedy="recorded motion is not read here yet")  # fmt: skip
-    details = given(row, without=("kind", "file", "start", "end"))
-    if not details:
-        return row.kind or "walk"
-    preset = PRESETS.get(table.preset)
-    rate = table.rate or (preset.rate if preset else 30.0)
-    duration = table.duration or (preset.duration if preset else 3.0)
-    return Motion(row.kind or "walk", duration, rate, **{"seed": table.seed, **details})
+def _recorded(row: MotionTable, rate: float, duration: float | None) -> Recorded:
+    """A motion from a file; it lasts `duration` seconds where the table does not say when it ends."""
+    from muybridge.synthetic.recorded import Recorded
+
+    assert row.file is not None
+    details = given(row, only=("start", "end", "heading", "place", "scale", "axes", "file_rate"))
+    if duration is not None and row.end is None:
+        details["end"] = (row.start or 0.0) + duration
+    skeleton = "" if row.skeleton is None else str(row.skeleton)
+    return Recorded(str(row.file), rate=rate, skeleton=skeleton, **details)
 
 
-def _person(row: PersonTable, base: Person, motion: Motion) -> Person:
+def _person(row: PersonTable, base: Person, motion: Motion | Recorded) -> Person:
     """The base person, with what the table says instead."""
     clothes = _clothes(row.garment, base.outfit)
+    known = load_figure(base.figure).label_names
+    for garment in row.garment:
+        if garment.label not in known:
+            raise InputError("garment: label", expected=f"one of {', '.join(known)}", got=repr(garment.label))
     loose = base.looseness if row.looseness is None else row.looseness
     return Person(base.figure, motion, clothes, loose)
 
 
 def _other(row: PersonTable, scene: Scene) -> Person:
     """Somebody else, who does something for as long as the person does."""
-    given_motion = scene.person.motion
-    action = row.motion or MotionTable()
-    details = given(action, without=("kind", "file", "start", "end"))
-    motion = Motion(action.kind or "walk", given_motion.duration, given_motion.rate,
-                    **{"seed": scene.seed + 1, **details})  # fmt: skip
+    action, seconds = row.motion or MotionTable(), scene.person.motion.duration
+    motion: Motion | Recorded
+    if action.file is not None:
+        motion = _recorded(action, scene.rate, seconds)
+    else:
+        details = {"seed": scene.seed + 1, **given(action, only=MADE)}
+        motion = Motion(action.kind or "walk", seconds, scene.rate, **details)
     base = Person(row.figure or "woman", motion, outfit(row.outfit or "checked"))
-    load_figure(base.figure)
     return _person(row, base, motion)
 
 
@@ -198,3 +211,15 @@ def _check_inside(scene: Scene, joints: np.ndarray) -> None:
     if not (np.abs(joints[..., :2]) < half).all():
         raise InputError("motion", expected="a way inside the room", got=f"one through a wall at {half:g} m",
                          remedy="make it shorter, or set room.half_width")  # fmt: skip
+
+
+def _check_finite(value: Any, source: str, place: str) -> None:
+    """Raise at the first number that is none; TOML knows nan and inf."""
+    if isinstance(value, dict):
+        for key, item in value.items():
+            _check_finite(item, source, f"{place}.{key}" if place else str(key))
+    elif isinstance(value, list):
+        for index, item in enumerate(value):
+            _check_finite(item, source, f"{place}[{index}]")
+    elif isinstance(value, float) and not np.isfinite(value):
+        raise InputError(f"{source}: {place}", expected="a finite number", got=str(value))

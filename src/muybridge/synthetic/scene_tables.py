@@ -36,21 +36,28 @@ class MotionTable(Table, frozen=True):
     """`[motion]`: a kind of motion, or a recorded one."""
 
     kind: str | None = None
-    file: Path | None = None
-    start: Annotated[float, Meta(ge=0)] | None = None
-    end: Positive | None = None
-    heading: float | None = None
     turn_rate: float | None = None
-    place: Place | None = None
     cadence: Positive | None = None
     vigour: Positive | None = None
     seed: Annotated[int, Meta(ge=0)] | None = None
+    file: Path | None = None
+    start: Annotated[float, Meta(ge=0)] | None = None
+    end: Positive | None = None
+    skeleton: Path | None = None
+    scale: Positive | None = None
+    axes: str | None = None
+    file_rate: Positive | None = None
+    heading: float | None = None
+    place: Place | None = None
 
     def __post_init__(self) -> None:
-        if self.kind is not None and self.file is not None:
-            raise ValueError("expected kind or file, got both")
-        if self.file is None and (self.start is not None or self.end is not None):
-            raise ValueError("expected start and end together with file, got no file")
+        made = [name for name in ("kind", "turn_rate", "cadence", "vigour", "seed") if getattr(self, name) is not None]
+        if self.file is not None and made:
+            raise ValueError(f"expected kind or file, got file and {made[0]}")
+        recorded = ("start", "end", "skeleton", "scale", "axes", "file_rate")
+        needless = [name for name in recorded if getattr(self, name) is not None]
+        if self.file is None and needless:
+            raise ValueError(f"expected {needless[0]} together with file, got no file")
         if self.start is not None and self.end is not None and self.start >= self.end:
             raise ValueError(f"expected start before end, got {self.start:g} and {self.end:g}")
 
@@ -173,6 +180,8 @@ class SceneTable(Table, frozen=True):
             raise ValueError("expected view or [[camera]] tables, got both")
         if self.person.motion is not None:
             raise ValueError("expected the person's motion in [motion], got [person.motion]")
+        if self.motion is not None and self.motion.end is not None and self.duration is not None:
+            raise ValueError("expected duration or motion.end, got both")
 
 
 def given(table: Table, *, only: Sequence[str] | None = None, without: Sequence[str] = ()) -> dict[str, Any]:

@@ -22,8 +22,8 @@ def scene_text(scene: Scene) -> str:
 
 def scene_table(scene: Scene) -> dict[str, Any]:
     """The nested tables of a scene file, complete."""
-    motion = asdict(scene.person.motion)
-    table: dict[str, Any] = {"seed": scene.seed, "duration": motion.pop("duration"), "rate": motion.pop("rate")}
+    motion = _motion(scene.person)
+    table: dict[str, Any] = {"seed": scene.seed, "duration": motion.pop("duration", None), "rate": motion.pop("rate")}
     if not scene.others:
         table["other"] = []
     if not scene.occluders:
@@ -46,8 +46,13 @@ def _person(person: Person) -> dict[str, Any]:
     return {"figure": person.figure, "looseness": person.looseness, "garment": garments}
 
 
+def _motion(person: Person) -> dict[str, Any]:
+    """A recorded motion has no duration of its own, and words that it leaves open are empty."""
+    return {key: value for key, value in asdict(person.motion).items() if value != ""}
+
+
 def _own_motion(person: Person) -> dict[str, Any]:
-    return {key: value for key, value in asdict(person.motion).items() if key not in ("duration", "rate")}
+    return {key: value for key, value in _motion(person).items() if key not in ("duration", "rate")}
 
 
 def _camera(camera: Camera) -> dict[str, Any]:
