@@ -19,6 +19,13 @@ from muybridge.synthetic.skinning import load_figure
 from muybridge.synthetic.textures import Colour
 
 TRIES = 300
+Size = tuple[float, float, float]
+#: Kind, least and largest size of what may stand in the way: a pillar, a crate or counter, a table.
+BARRIERS: tuple[tuple[str, Size, Size], ...] = (
+    ("box", (0.12, 0.12, 2.6), (0.20, 0.20, 2.6)),
+    ("box", (0.45, 0.35, 0.7), (0.9, 0.5, 1.15)),
+    ("table", (1.0, 0.6, 0.72), (1.5, 0.8, 0.9)),
+)
 LOOSENESS = 0.03  # metres
 WOODS: tuple[Colour, ...] = ((88, 112, 138), (62, 84, 108), (120, 134, 142), (84, 92, 78), (66, 66, 96))
 
@@ -70,15 +77,17 @@ def _out_of_the_way(thing: Occluder, rig: Rig, others: Sequence[Occluder]) -> bo
 def _in_the_way(rng: np.random.Generator, scene: Scene, joints: np.ndarray) -> Occluder:
     """A pillar, crate or table between one camera and the person's way."""
     middle = joints[:, 0, :2].mean(axis=0)
-    for _ in range(TRIES):
+    shapes = np.repeat(rng.permutation(len(BARRIERS)), TRIES // len(BARRIERS))
+    for shape in shapes:
         camera = scene.rig[int(rng.integers(len(scene.rig)))]
-        share, aside = rng.uniform(0.30, 0.62), rng.normal(0, 0.25)
+        share, aside = rng.uniform(0.30, 0.75), rng.normal(0, 0.3)
         line = middle - camera.position[:2]
         across = np.array([-line[1], line[0]]) / np.linalg.norm(line)
         place = camera.position[:2] + share * line + aside * across
-        kind, size = _barrier(rng)
+        kind, low, high = BARRIERS[shape]
+        width, depth, height = (float(side) for side in rng.uniform(low, high))
         woods = rng.choice(len(WOODS), 2, replace=False)
-        thing = Occluder(kind, (float(place[0]), float(place[1])), size, rng.uniform(0, np.pi),
+        thing = Occluder(kind, (float(place[0]), float(place[1])), (width, depth, height), rng.uniform(0, np.pi),
                          str(rng.choice(["denim", "plain"])), WOODS[woods[0]], WOODS[woods[1]])  # fmt: skip
         clear = all(thing.distance(other.position[:2]) > 0.8 for other in scene.rig)
         if clear and clear_of([thing], joints, 0.15) and _hides_some(thing, scene.rig, joints):
@@ -91,18 +100,7 @@ def _hides_some(thing: Occluder, rig: Rig, joints: np.ndarray) -> bool:
     """Whether it hides a good part of the person from some camera for a while, and from none nearly all for long."""
     shares = np.array([hides(thing, camera.position, joints).mean(axis=1) for camera in rig])  # (C, T)
     worst = (shares > 0.6).mean(axis=1).max()
-    return bool((shares > 0.2).mean(axis=1).max() > 0.15 and worst < 0.12)
-
-
-def _barrier(rng: np.random.Generator) -> tuple[str, tuple[float, float, float]]:
-    """Kind and size of something that hides a part of a person."""
-    shape = int(rng.integers(3))
-    if shape == 0:
-        side = rng.uniform(0.12, 0.2)
-        return "box", (side, side, 2.6)
-    if shape == 1:
-        return "box", (rng.uniform(0.35, 0.6), rng.uniform(0.3, 0.5), rng.uniform(0.5, 0.9))
-    return "table", (rng.uniform(0.8, 1.2), rng.uniform(0.5, 0.7), rng.uniform(0.70, 0.78))
+    return bool((shares > 0.12).mean(axis=1).max() > 0.2 and worst < 0.12)
 
 
 def _passer_by(

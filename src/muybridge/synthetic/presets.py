@@ -181,10 +181,12 @@ def _placed(
     rng: np.random.Generator, figure: Figure, draft: _Draft, half_width: float
 ) -> tuple[Motion | Recorded, Rig, float]:
     """A motion and cameras that see it whole; ways that need it get cameras further off, in a larger room."""
+    performed, joints = None, np.empty(0)
     for number in range(TRIES):
         wider = 1.0 + max(0.0, 2 * number / TRIES - 0.5)
         motion = _motion(rng, draft)
-        joints = perform(figure, motion).joints
+        if motion != performed:  # one that is given stays the same, and a recording takes long to perform
+            performed, joints = motion, perform(figure, motion).joints
         if draft.rig is not None:
             return motion, draft.rig, max(half_width, _needed(draft.rig, joints))
         if not (np.ptp(joints[:, 0, :2], axis=0) <= draft.preset.floor).all():
