@@ -9,6 +9,7 @@ import msgspec
 import numpy as np
 import pytest
 
+from conftest import shared_data
 from muybridge.errors import InputError
 from muybridge.io._tables import Table
 from muybridge.synthetic import scene_tables
@@ -87,6 +88,16 @@ def test_somebody_else(tmp_path: Path) -> None:
     text = '[[other]]\nfigure = "man"\noutfit = "red"\nmotion = {kind = "wave", place = [1.5, 1.0]}\n'
     other = read(written(tmp_path, text)).others[0]
     assert (other.figure, other.motion.kind, other.motion.place) == ("man", "wave", (1.5, 1.0))
+
+
+def test_a_recorded_motion(tmp_path: Path) -> None:
+    """It lasts as long as the file says or `duration` does, and comes back from what is written."""
+    pytest.importorskip("muybridge.synthetic.recorded")
+    file = shared_data("mocap") / "02" / "02_01.amc"
+    text = f'preset = "easy"\n[motion]\nfile = "{file}"\nstart = 0.5\n'
+    scene = read(written(tmp_path, text + "end = 1.5\n"))
+    assert scene.frame_count == 30 == read(written(tmp_path, "duration = 1.0\n" + text)).frame_count
+    assert read(written(tmp_path, scene_text(scene))) == scene
 
 
 @pytest.mark.parametrize(

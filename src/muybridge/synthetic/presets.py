@@ -152,7 +152,11 @@ def preset_scene(
 def figure_names() -> tuple[str, ...]:
     """The people there are."""
     folder = resources.files("muybridge.synthetic") / "bodies"
-    return tuple(sorted(entry.name[:-4] for entry in folder.iterdir() if entry.name.endswith(".npz")))
+    return tuple(
+        sorted(
+            entry.name[:-4] for entry in folder.iterdir() if entry.name.endswith(".npz") and entry.name != "common.npz"
+        )
+    )
 
 
 @dataclass(frozen=True)

@@ -70,17 +70,18 @@ def write_scene(scene: Scene, folder: str | Path, *, progress: Callable[[int, in
     """
     folder = Path(folder)
     check_replaceable(folder)
-    unfinished = temporary_name(folder.absolute())
+    target = folder.resolve()  # where a link leads: the link itself stays
+    unfinished = temporary_name(target)
     make_folder(unfinished.parent)
     with disk_errors(folder):
         shutil.rmtree(unfinished, ignore_errors=True)
         unfinished.mkdir()
     try:
-        _write_all(scene, unfinished, folder.absolute().name, progress)
+        _write_all(scene, unfinished, target.name, progress)
         with disk_errors(folder):
-            if folder.exists():
-                shutil.rmtree(folder)
-            os.replace(unfinished, folder)
+            if target.exists():
+                shutil.rmtree(target)
+            os.replace(unfinished, target)
     except BaseException:
         shutil.rmtree(unfinished, ignore_errors=True)
         raise
