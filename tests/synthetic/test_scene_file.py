@@ -125,7 +125,7 @@ def test_a_recorded_motion(tmp_path: Path) -> None:
         ('[motion]\nkind = "fly"', "motion: kind: expected one of"),
         ("[motion]\nheading = nan", "motion.heading: expected a finite number"),
         (CAMERA + "[room]\nhalf_width = 4.0\n[motion]\nduration = 3", "unknown motion.duration"),
-        (CAMERA + "[room]\nhalf_width = 3.6\n[motion]\nheading = 1.57\nplace = [0, 1.8]", "a way inside the room"),
+        (CAMERA + "[room]\nhalf_width = 3.6\n[motion]\nheading = 1.57\nplace = [0, 2.3]", "a way inside the room"),
         ('[[person.garment]]\nlabel = "hat"', "garment: label: expected one of"),
         ('[[person.garment]]\nlabel = "shirt"\npattern = "tartan"', "pattern: expected one of"),
         ("[person]\nlooseness = 3", "looseness: expected 0 to 0.15 m"),
