@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 import tomllib
 from dataclasses import replace
 
@@ -10,12 +11,16 @@ import pytest
 
 from muybridge.cameras.json_format import read_json
 from muybridge.cameras.model import Rig
+from muybridge.errors import InputError
+from muybridge.evaluation.angles import ANGLES, joint_angles
 from muybridge.evaluation.names import JOINTS
 from muybridge.evaluation.truth import read_truth
 from muybridge.io import job as jobs
 from muybridge.io.video import open_masks, open_pictures
 from muybridge.synthetic.motion import Motion
-from muybridge.synthetic.scene import demo_scene, render, truth
+from muybridge.synthetic.scene import demo_scene, render, shoot, truth
+from muybridge.synthetic.scene_file import read
+from muybridge.synthetic.visibility import SEGMENTS
 from muybridge.synthetic.write import measures, stature, write_scene
 
 
@@ -49,6 +54,59 @@ def test_truth_columns(written):
     assert (
         len(lines) == 1 + 4 * 15 and lines[1].startswith("0,0.000000,pelvis,") and float(lines[1].split(",")[-1]) == 0
     )
+
+
+def test_true_angles(written):
+    """Four decimals of a degree."""
+    scene, folder, _ = written
+    header, *rows = (folder / "truth_angles.csv").read_text().splitlines()
+    assert header.split(",") == ["frame", "time_s", *(f"{name}_deg" for name in ANGLES)]
+    table = np.array([[float(cell) for cell in row.split(",")] for row in rows])
+    expected = np.degrees(joint_angles(truth(scene).joints, JOINTS))
+    np.testing.assert_allclose(table[:, 2:], expected, atol=6e-5)
+    np.testing.assert_allclose(table[:, :2], np.stack([np.arange(4), np.arange(4) / 30], axis=1), atol=1e-6)
+
+
+def test_true_visibility(written):
+    scene, folder, _ = written
+    header, *rows = (folder / "truth_visibility.csv").read_text().splitlines()
+    assert header == "frame,camera,segment,visible" and len(rows) == 4 * 2 * len(SEGMENTS)
+    found = {tuple(row.split(",")[:3]): float(row.split(",")[3]) for row in rows}
+    for camera, shot in zip(scene.rig.names, shoot(scene, 3, visibility=True), strict=True):
+        for segment, share in zip(SEGMENTS, shot.visible, strict=True):
+            assert found["3", camera, segment] == pytest.approx(share, abs=6e-5)
+
+
+def test_the_scene_itself(written):
+    scene, folder, _ = written
+    assert read(folder / "scene.toml") == scene
+
+
+def test_an_earlier_scene_is_replaced_whole(written, tmp_path):
+    scene, folder, _ = written
+    shutil.copytree(folder, tmp_path / "scene")
+    (tmp_path / "scene" / "cam9.mp4").write_text("of the earlier scene")
+    job = write_scene(scene, tmp_path / "scene")
+    assert not (tmp_path / "scene" / "cam9.mp4").exists() and job == tmp_path / "scene" / "job.toml"
+    assert [path.name for path in tmp_path.iterdir()] == ["scene"]
+    assert (tmp_path / "scene" / "cam1.mp4").read_bytes() == (folder / "cam1.mp4").read_bytes()
+    assert jobs.read(job).name == "scene"
+
+
+def test_other_files_are_left_alone(written, tmp_path):
+    (tmp_path / "notes.txt").write_text("mine")
+    with pytest.raises(InputError, match="a new or empty folder"):
+        write_scene(written[0], tmp_path)
+    assert [path.name for path in tmp_path.iterdir()] == ["notes.txt"]
+
+
+def test_what_is_interrupted_leaves_nothing(written, tmp_path):
+    def stop(done: int, of: int) -> None:
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        write_scene(written[0], tmp_path / "scene", progress=stop)
+    assert not list(tmp_path.iterdir())
 
 
 def test_cameras(written):

@@ -1,4 +1,4 @@
-"""The empty room: a box with a floor of planks or tiles, painted walls with pictures and a door, and its light."""
+"""The empty room: a box with a floor of planks, tiles or carpet, painted walls with pictures, a door, and its light."""
 
 from __future__ import annotations
 
@@ -7,7 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from muybridge.cameras.model import Camera
+from muybridge.errors import InputError
 from muybridge.synthetic.textures import Colour, smooth_noise
+
+FLOORS = ("planks", "tiles", "carpet")
 
 
 @dataclass(frozen=True)
@@ -18,7 +21,7 @@ class Room:
     ----------
     half_width : metres: walls at x = +-half_width and y = +-half_width
     height : metres
-    floor : "planks" or "tiles"
+    floor : "planks", "tiles" or "carpet"
     wall, floor_colour : BGR, 0-255
     clutter : how many things hang on each wall
     """
@@ -30,6 +33,15 @@ class Room:
     floor_colour: Colour = (96, 132, 164)
     clutter: int = 4
     seed: int = 0
+
+    def __post_init__(self) -> None:
+        if self.floor not in FLOORS:
+            raise InputError("room: floor", expected=f"one of {', '.join(FLOORS)}", got=repr(self.floor))
+        for name in ("half_width", "height"):
+            if not (np.isfinite(getattr(self, name)) and getattr(self, name) > 0):
+                raise InputError(f"room: {name}", expected="positive metres", got=str(getattr(self, name)))
+        if self.clutter < 0:
+            raise InputError("room: clutter", expected="0 or more things", got=str(self.clutter))
 
 
 def picture(room: Room, camera: Camera, samples: int = 2) -> tuple[np.ndarray, np.ndarray]:
@@ -49,6 +61,14 @@ def picture(room: Room, camera: Camera, samples: int = 2) -> tuple[np.ndarray, n
     place, surface = _hits(room, camera.position, rays.reshape(-1, 3))
     floor = np.where((surface == 4)[:, None], place[:, :2], np.nan).reshape(height, width, 2)
     return colours.astype(np.float32), floor.astype(np.float32)
+
+
+def relit(room: Room, camera: Camera, spot: tuple[float, float]) -> np.ndarray:
+    """(H, W) float32: brightness with the lamps above `spot`, (x, y) metres, over that with the lamps in the middle."""
+    width, height = camera.size
+    _, rays = camera.pixel_to_ray(_pixel_grid(width, height))
+    place, _ = _hits(room, camera.position, rays.reshape(-1, 3))
+    return (_light(room, place, spot) / _light(room, place)).reshape(height, width).astype(np.float32)
 
 
 def _pixel_grid(width: int, height: int) -> np.ndarray:
@@ -87,23 +107,26 @@ def _traced(room: Room, origin: np.ndarray, rays: np.ndarray) -> np.ndarray:
     return np.clip(colours * _light(room, place)[:, None], 0, 255)
 
 
-def _light(room: Room, place: np.ndarray) -> np.ndarray:
-    """(N,) brightness: lamps above the middle, corners and edges darker."""
-    distance = np.linalg.norm(place - (0.0, 0.0, room.height), axis=1)
+def _light(room: Room, place: np.ndarray, spot: tuple[float, float] = (0.0, 0.0)) -> np.ndarray:
+    """(N,) brightness: lamps above a spot, corners and edges darker."""
+    distance = np.linalg.norm(place - (*spot, room.height), axis=1)
     inward = np.sort(np.minimum(room.half_width - np.abs(place[:, :2]), 1.0), axis=1)
     edge = np.minimum(np.where(inward[:, 0] < 1e-6, inward[:, 1], inward[:, 0]), 1.0)
     corner = np.where(place[:, 2] < 1e-6, edge, np.minimum(edge, np.minimum(place[:, 2], 1.0)))
-    return (1.12 - 0.035 * distance) * (0.80 + 0.20 * np.sqrt(np.clip(corner, 0, 1)))
+    return np.maximum(1.12 - 0.035 * distance, 0.4) * (0.80 + 0.20 * np.sqrt(np.clip(corner, 0, 1)))
 
 
 def _floor(rng: np.random.Generator, room: Room, at: np.ndarray) -> np.ndarray:
-    """(N, 3) colours of the floor at (N, 2) metres: boards with grain, or tiles with joints."""
+    """(N, 3) colours of the floor at (N, 2) metres: boards with grain, tiles with joints, or carpet."""
     base = np.array(room.floor_colour, dtype=np.float64)
     if room.floor == "tiles":
         cell = np.floor(at / 0.5).astype(int)
         shade = 1 + 0.10 * np.where((cell.sum(axis=1) % 2) == 0, 1.0, -1.0)
         gap = (np.abs(at / 0.5 - np.round(at / 0.5)) < 0.012).any(axis=1)
         shade = shade + 0.06 * smooth_noise(rng, at, 0.2)
+    elif room.floor == "carpet":
+        shade = 1 + 0.04 * smooth_noise(rng, at, 0.03, 2) + 0.03 * smooth_noise(rng, at, 0.7)
+        gap = np.zeros(len(at), dtype=bool)
     else:
         row = np.floor(at[:, 1] / 0.16).astype(int)
         offset = rng.uniform(0, 1.6, 512)[row % 512]

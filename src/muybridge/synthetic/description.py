@@ -1,0 +1,107 @@
+"""What a scene is made from: plain values, frozen and comparable, so that equal scenes have equal pictures."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from muybridge.cameras.model import Rig
+from muybridge.errors import InputError
+from muybridge.synthetic.light import Light
+from muybridge.synthetic.motion import Motion
+from muybridge.synthetic.occluders import Occluder
+from muybridge.synthetic.outfits import OUTFITS, Outfit
+from muybridge.synthetic.room import Room
+from muybridge.synthetic.sensor import Sensor
+
+if TYPE_CHECKING:
+    from muybridge.synthetic.recorded import Recorded
+
+
+@dataclass(frozen=True)
+class Person:
+    """Who does what, and what is worn.
+
+    Parameters
+    ----------
+    figure : a baked person, such as "man" or "woman"
+    motion : what is done, a `Motion` or a recorded one
+    outfit : garments; together with BARE they cover every label of the figure
+    looseness : metres, how far the clothes stand off the body
+    """
+
+    figure: str = "man"
+    motion: Motion | Recorded = field(default_factory=Motion)
+    outfit: Outfit = OUTFITS["striped"]
+    looseness: float = 0.0
+
+    def __post_init__(self) -> None:
+        if not 0 <= self.looseness <= 0.15:
+            raise InputError("person: looseness", expected="0 to 0.15 m", got=str(self.looseness))
+
+
+@dataclass(frozen=True)
+class Scene:
+    """Everything a scene is made from.
+
+    Parameters
+    ----------
+    rig, room : who looks on, and where
+    person : who is to be tracked
+    noise : standard deviation of a grey value of 128, in grey values; it grows with the square root of the light
+    drift : relative change of the light, up and down, over the clip
+    shadow : 0 (none) to 1 (black): how dark the cast shadow is
+    others : people who are in the way; they are in no mask and no truth
+    occluders : things that stand about, in the empty frames too
+    light : lamps, and when they go on and off
+    sensor : exposure, shutter, compression
+    """
+
+    rig: Rig
+    person: Person = field(default_factory=Person)
+    room: Room = field(default_factory=Room)
+    noise: float = 3.0
+    drift: float = 0.015
+    shadow: float = 0.45
+    seed: int = 0
+    others: tuple[Person, ...] = ()
+    occluders: tuple[Occluder, ...] = ()
+    light: Light = Light()
+    sensor: Sensor = Sensor()
+
+    def __post_init__(self) -> None:
+        for name, least, most in (("noise", 0, 100), ("drift", 0, 0.9), ("shadow", 0, 1)):
+            if not least <= getattr(self, name) <= most:
+                raise InputError(f"scene: {name}", expected=f"{least} to {most}", got=str(getattr(self, name)))
+        for other in self.others:
+            if len(other.motion.times) != self.frame_count or other.motion.rate != self.rate:
+                expected = f"{self.frame_count} frames at {self.rate:g} Hz, as the person's"
+                got = f"{len(other.motion.times)} at {other.motion.rate:g} Hz"
+                raise InputError("scene: motion of another person", expected=expected, got=got)
+        for camera in self.rig:
+            for thing in self.occluders:
+                if camera.position[2] < thing.size[2] and not thing.distance(camera.position[:2]) > 0:
+                    raise InputError(f"camera {camera.name}", expected="a place outside every occluder",
+                                     got="one inside", remedy="move one of the two")  # fmt: skip
+
+    @property
+    def people(self) -> tuple[Person, ...]:
+        """Everybody; the one to be tracked comes first."""
+        return (self.person, *self.others)
+
+    @property
+    def frame_count(self) -> int:
+        """How many frames the clip has."""
+        return len(self.person.motion.times)
+
+    @property
+    def rate(self) -> float:
+        """Frames per second."""
+        return self.person.motion.rate
+
+    @property
+    def duration(self) -> float:
+        """Seconds."""
+        return float(np.float64(self.frame_count) / self.rate)

@@ -1,0 +1,131 @@
+"""A scene's parts, made once: people who move, and the empty room of each camera in every state of the light."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+
+from muybridge.cameras.model import Camera
+from muybridge.synthetic.compose import lay_over
+from muybridge.synthetic.description import Person, Scene
+from muybridge.synthetic.light import Lamp
+from muybridge.synthetic.motion import Track, perform
+from muybridge.synthetic.occluders import cloth_of, mesh_of
+from muybridge.synthetic.outfits import BARE
+from muybridge.synthetic.posture import mesh_at
+from muybridge.synthetic.rasterise import Cloth, Layer, Mesh, draw
+from muybridge.synthetic.room import picture, relit
+from muybridge.synthetic.shadow import FloorShade, floor_shade
+from muybridge.synthetic.skinning import Figure, load_figure
+from muybridge.synthetic.textures import clothing
+
+
+@dataclass(frozen=True, eq=False)
+class Actor:
+    """A person, made: figure, cloth, and where each bone is in each frame."""
+
+    figure: Figure
+    cloth: Cloth
+    track: Track
+    looseness: float
+
+    def mesh(self, frame: float) -> Mesh:
+        """The person at a frame number that need not be whole."""
+        return mesh_at(self.figure, self.track, frame, self.looseness)
+
+
+@dataclass(frozen=True, eq=False)
+class Decor:
+    """What does not move, in one state of the light; one entry a camera.
+
+    Parameters
+    ----------
+    rooms : (H, W, 3) float32 each: the bare room
+    things : the occluders, drawn; none where there are none
+    plates : (H, W, 3) float32 each: room, occluders and their shadows: what an empty frame shows
+    """
+
+    rooms: tuple[np.ndarray, ...]
+    things: tuple[tuple[Layer, ...], ...]
+    plates: tuple[np.ndarray, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Stage:
+    """What a scene describes, made.
+
+    Parameters
+    ----------
+    actors : the person to be tracked first
+    decors : one a state of the light
+    floors : (H, W, 2) float32 a camera, metres: the floor's x and y in each pixel; NaN off the floor
+    solids : vertices (V, 3) and faces (F, 3) of the occluders, for their shadows; none where there are none
+    """
+
+    actors: tuple[Actor, ...]
+    decors: tuple[Decor, ...]
+    floors: tuple[np.ndarray, ...]
+    solids: tuple[tuple[np.ndarray, np.ndarray], ...]
+
+    @property
+    def plates(self) -> tuple[np.ndarray, ...]:
+        """(H, W, 3) float32 a camera: the empty scene before anything is switched."""
+        return self.decors[0].plates
+
+    def shade(self, meshes: list[Mesh], lamp: Lamp, strength: float) -> FloorShade:
+        """The shadow of people and things together on the floor."""
+        pieces = [(mesh.vertices, mesh.faces) for mesh in meshes] + list(self.solids)
+        return floor_shade(*_joined(pieces), np.array(lamp.direction), strength)
+
+
+@lru_cache(maxsize=4)
+def stage(scene: Scene) -> Stage:
+    """Make everything that does not change from frame to frame; the last few scenes are kept."""
+    rooms = [picture(scene.room, camera) for camera in scene.rig]
+    floors = tuple(floor for _, floor in rooms)
+    solids: tuple[tuple[np.ndarray, np.ndarray], ...] = ()
+    if scene.occluders:
+        coarse = mesh_of(scene.occluders, cell=np.inf)
+        solids = ((coarse.vertices, coarse.faces),)
+    actors = tuple(_actor(scene, index, person) for index, person in enumerate(scene.people))
+    made = Stage(actors, (), floors, solids)
+    bare = tuple(plate for plate, _ in rooms)
+    return Stage(actors, tuple(_decor(scene, made, bare, lamp) for lamp in scene.light.lamps), floors, solids)
+
+
+def _actor(scene: Scene, index: int, person: Person) -> Actor:
+    figure = load_figure(person.figure)
+    rng = np.random.default_rng([scene.seed, 1, index] if index else [scene.seed, 1])
+    garments = {item.label: (item.pattern, item.colour, item.second, item.tile) for item in (*BARE, *person.outfit)}
+    cloth = clothing(rng, garments, figure.label_names)
+    return Actor(figure, cloth, perform(figure, person.motion), person.looseness)
+
+
+def _decor(scene: Scene, made: Stage, bare: tuple[np.ndarray, ...], lamp: Lamp) -> Decor:
+    rooms = tuple(_under(scene, camera, plate, lamp) for camera, plate in zip(scene.rig, bare, strict=True))
+    if not scene.occluders:
+        return Decor(rooms, tuple(() for _ in rooms), rooms)
+    mesh = mesh_of(scene.occluders)
+    cloth = cloth_of(np.random.default_rng([scene.seed, 2]), scene.occluders)
+    things = tuple((draw(camera, mesh, cloth, light=np.array(lamp.direction)),) for camera in scene.rig)
+    shade = made.shade([], lamp, scene.shadow)
+    plates = tuple(shade.applied(room, floor) for room, floor in zip(rooms, made.floors, strict=True))
+    for plate, layers in zip(plates, things, strict=True):
+        lay_over(plate, layers)
+    return Decor(rooms, things, plates)
+
+
+def _under(scene: Scene, camera: Camera, plate: np.ndarray, lamp: Lamp) -> np.ndarray:
+    """The bare room with its lamps where this lamp's spot is."""
+    return plate if lamp.spot == (0.0, 0.0) else plate * relit(scene.room, camera, lamp.spot)[..., None]
+
+
+def _joined(pieces: list[tuple[np.ndarray, np.ndarray]]) -> tuple[np.ndarray, np.ndarray]:
+    """Several meshes as one: vertices (V, 3) and faces (F, 3)."""
+    if len(pieces) == 1:
+        return pieces[0]
+    firsts = np.cumsum([0, *(len(vertices) for vertices, _ in pieces[:-1])])
+    faces = [faces + first for (_, faces), first in zip(pieces, firsts, strict=True)]
+    return np.concatenate([vertices for vertices, _ in pieces]), np.concatenate(faces).astype(np.int32)
