@@ -8,7 +8,6 @@ from muybridge.synthetic.motion import Track
 from muybridge.synthetic.rasterise import Mesh
 from muybridge.synthetic.skinning import Figure
 
-
 LAG = 0.1  # seconds by which loose cloth comes late
 
 
