@@ -9,7 +9,8 @@ import pytest
 
 from filters.oracles import NormalEquations
 from muybridge.errors import InputError
-from muybridge.filters import ConstantVelocity, GaussianWalk, guided
+from muybridge.filters import ConstantVelocity, GaussianWalk, NearlyConstantVelocity, guided
+from muybridge.filters.dynamics import Belief
 
 SIZE = 3
 SEES = np.array([[1.0, 0.5, 0.0], [0.0, 1.0, -0.4], [0.3, 0.0, 1.0], [1.0, 1.0, 1.0]])  # (M, D)
@@ -101,16 +102,64 @@ class TestLinear:
         assert (np.abs(state.estimate - mean) < 5 * 1.5 * error).all()  # 1.5: weights that differ make N smaller
 
     def test_dependence_and_noise_widen(self) -> None:
-        """The likelihood's information is divided by both; the mode is not moved by them."""
+        """The likelihood's information is divided by both: the mode moves towards the prior, and is known less well."""
         measured = measurements(1)[0]
         rng, state = begin(LINEAR)
-        plain, _ = guided.step(rng, state, Linear(measured), GaussianWalk(WALK_SD), LINEAR)
         config = replace(LINEAR, dependence=3.0)
         wide, _ = guided.step(rng, state, Linear(measured, noise=2.0), GaussianWalk(WALK_SD), config)
         prior = np.linalg.inv(np.diag(START_SD**2 + WALK_SD**2))
         expected = np.linalg.inv((SEES.T / VARIANCE) @ SEES / 6.0 + prior)
         np.testing.assert_allclose(wide.covariance, expected, atol=1e-7)
-        np.testing.assert_allclose(wide.estimate, plain.estimate, atol=1e-12)
+        np.testing.assert_allclose(wide.estimate, expected @ (SEES.T / VARIANCE @ measured) / 6.0, atol=1e-7)
+
+    def test_what_is_usual_counts_once_a_frame(self) -> None:
+        """A third normal density: its precision is added, and pulls towards its mean."""
+        measured = measurements(1)[0]
+        rng, state = begin(LINEAR)
+        usual, usual_sd = np.array([1.0, 0.0, -1.0]), np.array([0.2, np.inf, 0.1])
+        dynamics = GaussianWalk(WALK_SD, usual=usual, usual_sd=usual_sd)
+        state, _ = guided.step(rng, state, Linear(measured), dynamics, LINEAR)
+        precision = (SEES.T / VARIANCE) @ SEES + np.diag((START_SD**2 + WALK_SD**2) ** -1 + usual_sd**-2)
+        np.testing.assert_allclose(state.covariance, np.linalg.inv(precision), atol=1e-7)
+        pull = (SEES.T / VARIANCE) @ measured + usual / usual_sd**2
+        np.testing.assert_allclose(state.estimate, np.linalg.solve(precision, pull), atol=1e-7)
+
+
+class TestVelocity:
+    """Place and velocity under white accelerations, against the textbook's Kalman filter of twice the size."""
+
+    SPEED_SD, CHANGE_SD = np.array([0.1, 0.2, 0.05]), np.array([0.02, 0.05, 0.01])
+
+    def textbook(self, frames: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        one, none = np.eye(SIZE), np.zeros((SIZE, SIZE))
+        moves, sees = np.block([[one, one], [none, one]]), np.hstack([SEES, np.zeros_like(SEES)])
+        q = np.diag(self.CHANGE_SD**2)
+        noise = np.block([[q / 4, q / 2], [q / 2, q]])
+        mean = np.zeros(2 * SIZE)
+        covariance = np.diag(np.concatenate([START_SD**2, self.SPEED_SD**2]))
+        for measured in frames:
+            mean, covariance = moves @ mean, moves @ covariance @ moves.T + noise
+            gain = covariance @ sees.T @ np.linalg.inv(sees @ covariance @ sees.T + np.diag(VARIANCE))
+            mean, covariance = mean + gain @ (measured - sees @ mean), covariance - gain @ sees @ covariance
+        return mean, covariance
+
+    @pytest.mark.parametrize("frames", [1, 2, 6])
+    def test_is_the_kalman_filter_of_both(self, frames: int) -> None:
+        rng, state = begin(LINEAR)
+        dynamics = NearlyConstantVelocity(self.SPEED_SD, gain=1.0, acceleration_sd=self.CHANGE_SD)
+        for measured in measurements(frames):
+            state, _ = guided.step(rng, state, Linear(measured), dynamics, LINEAR)
+        mean, covariance = self.textbook(measurements(frames))
+        np.testing.assert_allclose(np.concatenate([state.estimate, state.velocity]), mean, atol=1e-6)
+        found = np.block([[state.covariance, state.cross], [state.cross.T, state.velocity_covariance]])
+        np.testing.assert_allclose(found, covariance, atol=1e-6)
+
+    def test_a_walk_is_another_filter(self) -> None:
+        """Negative control: without velocities the second frame's estimate differs by far more than the tolerance."""
+        rng, state = begin(LINEAR)
+        for measured in measurements(2):
+            state, _ = guided.step(rng, state, Linear(measured), GaussianWalk(self.SPEED_SD), LINEAR)
+        assert np.abs(state.estimate - self.textbook(measurements(2))[0][:SIZE]).max() > 1e-3
 
     def test_limits_hold_the_mode(self) -> None:
         upper = np.array([0.05, np.inf, np.inf])
@@ -173,7 +222,8 @@ class TestClimb:
     def test_a_block_set_free_has_no_past(self) -> None:
         """Its covariance with the others is cut, its own is what is said; the others keep theirs."""
         covariance = np.array([[0.04, 0.01, 0.0], [0.01, 0.09, 0.02], [0.0, 0.02, 0.25]])
-        prior = guided._Prior(np.zeros(SIZE), covariance, self.DYNAMICS)
+        belief = replace(Belief.at_rest(np.zeros(SIZE), WALK_SD), covariance=covariance)
+        prior = guided._Prior(belief, self.DYNAMICS)
         free = prior.freed(np.array([1]), np.array([0.7]), 0.5)
         assert free.mean.tolist() == [0.0, 0.7, 0.0]
         expected = np.array([[0.04, 0.0, 0.0], [0.0, 0.25, 0.0], [0.0, 0.0, 0.25]])

@@ -21,6 +21,7 @@ from muybridge.filters import METHODS, CommonConfig, ConstantVelocity, Info, Sta
 from muybridge.likelihood.colour import ColourReference
 from muybridge.likelihood.observation import ImageLikelihood, Observation
 from muybridge.tracking.motion import Motion, motion_of
+from muybridge.tracking.spread import SpreadConfig, joint_deviations, laplace
 
 TRACKED, DOUBTFUL, UNSEEN, LOST = "tracked", "doubtful", "unseen", "lost"
 
@@ -35,6 +36,7 @@ class TrackerConfig:
     doubtful_cost: float = 0.40  # two-sided silhouette cost from which a frame is doubted
     doubtful_ratio: float = 1.6  # or this many times the run's usual cost
     patience: int = 8  # doubted or unseen frames in a row after which the person counts as lost
+    spread: SpreadConfig = SpreadConfig()
     trust: float = 0.05  # added to a camera's usual cost before weights are taken as its inverse
 
 
@@ -176,10 +178,17 @@ class Tracker:
         if reference is not None and not doubted:
             reference = observation.updated_reference(following.estimate)
         body = self.model.body
-        joints = body.joints(following.particles)
-        sd = _joint_sd(joints, Weights(following.log_weights))
+        sd = self._deviations(following, observation)
         estimate = Estimate(following.estimate, body.joints(following.estimate), sd, costs, status, info)
         return TrackState(following, usual, troubled, state.seen + (not doubted), reference), estimate
+
+    def _deviations(self, state: State, observation: Observation) -> np.ndarray:
+        """(J,) metres; the guided filter knows the posterior's width, for the others it is worked out."""
+        pose, spread = state.estimate, self.config.spread
+        covariance, left = laplace(observation, pose, self.dynamics, spread)
+        if isinstance(state, guided.State):
+            covariance, left = state.covariance, np.zeros_like(pose)
+        return joint_deviations(pose, covariance, left, self.model.body, spread)
 
     def _reference(self, state: TrackState, observation: Observation) -> ColourReference | None:
         """What the segments look like: as known, else as at the first pose; None where colour does not count."""
@@ -211,7 +220,7 @@ class Tracker:
         standing = replace(state.filter, velocity=np.zeros_like(pose))
         body = self.model.body
         joints = body.joints(pose)
-        known = _joint_sd(body.joints(state.filter.particles), Weights(state.filter.log_weights))
+        known = _particles_sd(body.joints(state.filter.particles), Weights(state.filter.log_weights))
         drift = UNSEEN_SPEED * self.interval * np.sqrt(troubled) * 2.0
         status = LOST if troubled > self.config.patience else UNSEEN
         costs = np.full(len(self.model.rig), np.nan)
@@ -229,7 +238,7 @@ def _running_mean(usual: np.ndarray, costs: np.ndarray, count: int) -> np.ndarra
     return np.where(np.isfinite(usual), usual + rate * (costs - usual), costs)
 
 
-def _joint_sd(joints: np.ndarray, weights: Weights) -> np.ndarray:
+def _particles_sd(joints: np.ndarray, weights: Weights) -> np.ndarray:
     """(J,) metres: root mean square over the axes of the particles' (N, J, 3) standard deviation."""
     share = np.exp(weights.log)
     mean = np.einsum("n,nja->ja", share, joints)

@@ -1,0 +1,77 @@
+"""How far off the joints may be: what is reported as their standard deviation, for every filter alike.
+
+Three things add up, as variances:
+
+1. the posterior's own width: the curvature of the contour's log likelihood at the estimate, times what the motion and
+   the body allowed before the picture (a Laplace approximation). Particles would tell it too, but those of a filter
+   that optimises have been gathered around the best one and say next to nothing;
+2. how far the search stopped from the nearest mode: the Newton step that it did not take;
+3. what no filter can see: the tracked body's joint centres are not quite the person's.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from muybridge.body.model import Body
+from muybridge.filters.dynamics import Dynamics
+from muybridge.likelihood.observation import Observation
+
+STEP = 1e-4  # metres and radians, of the numerical derivative of joints by the pose
+LARGEST_STEP = 0.3  # radians and metres; beyond that a Newton step means nothing
+
+
+@dataclass(frozen=True)
+class SpreadConfig:
+    """What the reported standard deviations are made of; chosen by coverage, see docs/benchmarks.md."""
+
+    contour_m: float = 0.025  # spread of the contour's robust weights
+    dependence: float = 5.0  # so many neighbouring residuals err together
+    widening: float = 1.0  # factor on the posterior's own width: errors last for many frames
+    body_sd: float = 0.012  # metres, along each axis: joint centres of a body that was fitted, not measured
+
+
+def joint_deviations(
+    pose: np.ndarray, covariance: np.ndarray, left: np.ndarray, body: Body, config: SpreadConfig
+) -> np.ndarray:
+    """Standard deviation of each joint along each axis.
+
+    Parameters
+    ----------
+    pose : (D,) float64
+    covariance : (D, D) float64
+        Of the pose, metres and radians.
+    left : (D,) float64
+        The step to the mode that was not taken.
+
+    Returns
+    -------
+    (J,) float64, metres
+    """
+    slopes = joint_slopes(body, pose)
+    own = np.einsum("jad,de,jae->j", slopes, covariance, slopes) / 3.0
+    missed = np.square(slopes @ left).sum(axis=1) / 3.0
+    return np.sqrt(config.widening**2 * own + missed + config.body_sd**2)
+
+
+def joint_slopes(body: Body, pose: np.ndarray) -> np.ndarray:
+    """(J, 3, D) float64: metres that joints move per metre and radian of each component of the pose (D,)."""
+    moved = body.joints(pose + STEP * np.eye(len(pose)))
+    slopes: np.ndarray = np.moveaxis((moved - body.joints(pose)) / STEP, 0, -1)
+    return slopes
+
+
+def laplace(
+    observation: Observation, pose: np.ndarray, dynamics: Dynamics, config: SpreadConfig
+) -> tuple[np.ndarray, np.ndarray]:
+    """The posterior around an estimate: covariance (D, D), and the Newton step (D,) from the estimate to the mode.
+
+    What was known before the picture is one frame's motion about the estimate, and what is usual.
+    """
+    seen = observation.normal_equations(pose, config.contour_m)
+    usual = dynamics.usual_sd**-2.0
+    precision = seen.curvature / config.dependence + np.diag(np.maximum(dynamics.noise_sd, 1e-6) ** -2.0 + usual)
+    step = np.linalg.solve(precision, seen.gradient / config.dependence + usual * (dynamics.usual - pose))
+    return np.linalg.inv(precision), np.clip(step, -LARGEST_STEP, LARGEST_STEP)
