@@ -36,6 +36,7 @@ from muybridge.filters.particles import FloatArray, Weights, mean_estimate
 from muybridge.filters.resampling import resample
 from muybridge.filters.schedule import exponent_for_survival, powered
 from muybridge.filters.state import (
+    Blocks,
     CommonConfig,
     CountingLikelihood,
     Info,
@@ -47,8 +48,6 @@ from muybridge.filters.state import (
     conclude,
     require,
 )
-
-Blocks = tuple[tuple[int, ...], ...]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -111,7 +110,7 @@ def step(
             break
     log_weights = np.full(len(particles), -np.inf) if weights.collapsed else weights.log
     population = Population(particles, log_likelihoods)
-    return conclude(state, predicted, population, log_weights, counted, config, layers)
+    return conclude(state, predicted, population, log_weights, counted, config, dynamics, layers)
 
 
 def _noise_scales(config: Config, size: int) -> Iterator[FloatArray]:

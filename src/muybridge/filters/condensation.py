@@ -69,4 +69,4 @@ def step(
     log_weights = config.sharpness * population.log_likelihoods  # 3, (3.21)
     layers = Layers()
     layers.append(Weights(log_weights).survival_rate, config.sharpness)
-    return conclude(state, particles, population, log_weights, counted, config, layers)  # 4, (3.24) or (3.25)
+    return conclude(state, particles, population, log_weights, counted, config, dynamics, layers)  # 4, (3.24) or (3.25)

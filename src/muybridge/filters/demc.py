@@ -40,13 +40,16 @@ from muybridge.filters.dynamics import Dynamics
 from muybridge.filters.moves import Partners, Target, difference_scale_of, differential_move, exchange_move
 from muybridge.filters.particles import FloatArray, Weights
 from muybridge.filters.resampling import resample
+from muybridge.filters.schedule import exponent_for_survival, powered
 from muybridge.filters.state import (
+    Blocks,
     CommonConfig,
     CountingLikelihood,
     Info,
     Layers,
     Likelihood,
     PlainInit,
+    Population,
     State,
     conclude,
     require,
@@ -69,6 +72,9 @@ class Config(CommonConfig):
     crossover_rate: float = 0.0  # CR of (6.11); 0 is no crossover
     partners: Partners = "all"  # who r1 and r2 are; "other_half" is exact at any N, see moves.differential_move
     dynamics_noise: float = 0.0  # noise before the moves, times dynamics.noise_sd; 0 is printed, (6.16)
+    reselect: float | None = None  # before every layer so many survive a selection; None is printed: only at the start
+    blocks: Blocks | None = None  # components that layer t moves, taken in turn; None is all in every layer
+    by_limb: bool = False  # a tracker, which knows the body, fills in blocks: the root, then each limb
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -79,6 +85,8 @@ class Config(CommonConfig):
         require("crossover_rate", 0 <= self.crossover_rate <= 1, "between 0 and 1", self.crossover_rate)
         require("partners", self.partners in ("all", "other_half"), "all | other_half", self.partners)
         require("dynamics_noise", self.dynamics_noise >= 0, "not negative", self.dynamics_noise)
+        require("reselect", self.reselect is None or 0 < self.reselect < 1, "between 0 and 1", self.reselect)
+        require("blocks", self.blocks is None or all(map(len, self.blocks)), "no empty block", self.blocks)
 
 
 PRINTED = Config()
@@ -102,16 +110,40 @@ def step(
     population = first = target.measure(predicted)
     log_weights = config.sharpness * population.log_likelihoods
     layers = Layers()
-    for _ in range(config.layers):
+    for layer in range(config.layers):
+        population = _reselected(rng, population, config)
         factor = _sigma_factor(population.log_likelihoods, first.log_likelihoods, config)  # (6.20)
-        jump = _jumps(rng, predicted.shape, config.c * factor * dynamics.noise_sd, config)
-        scale = _difference_scale(config, predicted.shape[1])
+        moved = _moved(config, layer, predicted.shape[1])
+        jump = moved * _jumps(rng, predicted.shape, config.c * factor * dynamics.noise_sd, config)
+        scale = moved * _difference_scale(config, int(moved.sum()))
         population, accepted = differential_move(rng, population, target, scale, jump, config.partners)  # (6.12)-(6.13)
         if config.crossover_rate > 0:
             population, _ = exchange_move(rng, population, target, config.crossover_rate)  # (6.11), (6.15)
         log_weights = config.sharpness * population.log_likelihoods
         layers.append(Weights(log_weights).survival_rate, config.sharpness, accepted)
-    return conclude(state, predicted, population, log_weights, counted, config, layers)  # 3, (6.18), (6.19)
+    return conclude(state, predicted, population, log_weights, counted, config, dynamics, layers)  # 3, (6.18), (6.19)
+
+
+def _reselected(rng: np.random.Generator, population: Population, config: Config) -> Population:
+    """The population after a selection that leaves the wanted share alive; as it was where none is wanted."""
+    if config.reselect is None:
+        return population
+    exponent = min(exponent_for_survival(population.log_likelihoods, config.reselect), config.sharpness)
+    weights = Weights(powered(population.log_likelihoods, exponent))
+    return (
+        population
+        if weights.collapsed
+        else population.take(resample(rng, weights, config.particles, config.resampling))
+    )
+
+
+def _moved(config: Config, layer: int, size: int) -> FloatArray:
+    """(D,) 1 for the components that a layer moves, 0 for the others."""
+    if config.blocks is None:
+        return np.ones(size)
+    moved = np.zeros(size)
+    moved[list(config.blocks[layer % len(config.blocks)])] = 1.0
+    return moved
 
 
 def _sigma_factor(log_likelihoods: FloatArray, first: FloatArray, config: Config) -> float:

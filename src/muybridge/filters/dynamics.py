@@ -99,6 +99,10 @@ class Dynamics(Protocol):
         """What is believed a frame later, before it is seen."""
         ...
 
+    def velocity_after(self, velocity: FloatArray, step: FloatArray) -> FloatArray:
+        """The velocity (D,) once the estimate has made a step (D,)."""
+        ...
+
     def sample(
         self,
         rng: np.random.Generator,
@@ -179,6 +183,10 @@ class GaussianWalk:
         return replace(belief, covariance=belief.covariance + self._noise, velocity=np.zeros_like(belief.mean),
                        cross=none, velocity_covariance=none, velocity_gain=none)  # fmt: skip
 
+    def velocity_after(self, velocity: FloatArray, step: FloatArray) -> FloatArray:
+        """The step itself, V_k = X_k - X_{k-1}, (6.19)."""
+        return step
+
     @property
     def _noise(self) -> FloatArray:
         return np.diag(np.maximum(self.noise_sd, STANDING) ** 2)
@@ -229,9 +237,13 @@ class NearlyConstantVelocity(ConstantVelocity):
     acceleration_sd : (D,) float64, state units per frame squared
     gain : float
         Share of the velocity that lasts from a frame to the next.
+    follow : float
+        For filters without a covariance: the share of what a step surprises by that the velocity takes up (the beta of
+        an alpha-beta filter); 1 is (6.19).
     """
 
     acceleration_sd: FloatArray = None  # type: ignore[assignment]
+    follow: float = 0.4
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -258,6 +270,11 @@ class NearlyConstantVelocity(ConstantVelocity):
         mean = reflect((belief.mean + gain * belief.velocity)[None], self.lower, self.upper)[0]
         velocity_gain: FloatArray = np.linalg.solve(covariance, moved_cross).T.astype(np.float64)
         return Belief(mean, covariance, gain * belief.velocity, moved_cross, gain**2 * speeds + q, velocity_gain)
+
+    def velocity_after(self, velocity: FloatArray, step: FloatArray) -> FloatArray:
+        """V + follow (step - V), where V is what was expected to last."""
+        expected = self.gain * velocity
+        return expected + self.follow * (step - expected)
 
 
 def checked_limits(lower: FloatArray | None, upper: FloatArray | None, size: int) -> tuple[FloatArray, FloatArray]:

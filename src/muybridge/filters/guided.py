@@ -192,7 +192,7 @@ def step(
     layers = Layers()
     layers.append(Weights(log_weights).survival_rate, config.sharpness)
     population = Population(particles, log_likelihoods)
-    following, info = conclude(state, particles, population, log_weights, counted, config, layers)
+    following, info = conclude(state, particles, population, log_weights, counted, config, dynamics, layers)
     if info.collapsed:
         return following, info
     if config.weighting == "laplace":  # the particles' mean is the mode plus noise

@@ -67,7 +67,7 @@ def differential_move(
     rng: np.random.Generator,
     population: Population,
     target: Target,
-    difference_scale: float,
+    difference_scale: float | FloatArray,
     jump: FloatArray,
     partners: Partners = "other_half",
 ) -> tuple[Population, float]:
@@ -75,6 +75,8 @@ def differential_move(
 
     Parameters
     ----------
+    difference_scale : float or (D,) float64
+        lambda; 0 for components that stand.
     jump : (N, D) float64, state units
         g, drawn by the caller from a distribution symmetric about zero.
     partners : "all" | "other_half"

@@ -23,6 +23,10 @@ COLLAPSE_REMEDY = (
 )
 
 
+Blocks = tuple[tuple[int, ...], ...]
+"""Components of the state that are moved together, such as those of a limb."""
+
+
 class Likelihood(Protocol):
     """One frame's observation, frozen."""
 
@@ -220,6 +224,7 @@ def conclude(
     log_weights: FloatArray,
     counted: CountingLikelihood,
     config: CommonConfig,
+    dynamics: Dynamics,
     layers: Layers,
     *,
     scores: FloatArray | None = None,
@@ -243,7 +248,7 @@ def conclude(
     if not weights.collapsed:
         ranking = weights if scores is None or config.estimate == "mean" else Weights(scores)
         estimate = ESTIMATES[config.estimate](population.particles, ranking)
-        velocity = estimate - state.estimate  # (6.19)
+        velocity = dynamics.velocity_after(state.velocity, estimate - state.estimate)  # (6.19)
         log_likelihood = _log_likelihood_of_estimate(estimate, ranking, population.log_likelihoods, counted, config)
         state = replace(
             state, particles=population.particles, log_weights=weights.log, estimate=estimate, velocity=velocity

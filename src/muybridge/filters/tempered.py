@@ -107,7 +107,9 @@ def step(
     scores = target.log_density(population, np.arange(config.particles))
     log_weights = np.where(scores > -np.inf, 0.0, -np.inf)
     remedy = UNFINISHED_REMEDY if target.exponent < config.sharpness else ""
-    return conclude(state, predicted, population, log_weights, counted, config, layers, scores=scores, remedy=remedy)
+    return conclude(
+        state, predicted, population, log_weights, counted, config, dynamics, layers, scores=scores, remedy=remedy
+    )
 
 
 def _next_exponent(log_likelihoods: FloatArray, exponent: float, config: Config) -> float:

@@ -126,7 +126,15 @@ class MotionInput(Table, frozen=True):
     turn_speed: Weight | None = None
     """Radians a second, of every other joint."""
     velocity_gain: Annotated[float, Meta(ge=0, le=1)] | None = None
-    """Share of the last step that the prediction repeats."""
+    """Share of the velocity that the prediction repeats."""
+    root_acceleration: Weight | None = None
+    """Metres a second squared; where all three are 0, velocities are differences of places, not estimated."""
+    root_turn_acceleration: Weight | None = None
+    """Radians a second squared."""
+    turn_acceleration: Weight | None = None
+    """Radians a second squared, of every other joint."""
+    usual_weight: Weight | None = None
+    """How strongly the body's usual angles are preferred; 0: not at all, 1: as the body states them."""
 
 
 class LikelihoodInput(Table, frozen=True):

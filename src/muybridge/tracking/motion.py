@@ -19,14 +19,15 @@ from muybridge.filters import ConstantVelocity, NearlyConstantVelocity
 class Motion:
     """What the prediction does not know, one standard deviation a second; how much of the last step it repeats."""
 
-    root_speed: float = 1.25  # metres a second
-    root_turn_speed: float = 3.75  # radians a second
-    turn_speed: float = 3.75  # radians a second, of every other joint
-    velocity_gain: float = 0.5  # share of the last step that the prediction repeats; 1 feeds noise back
-    root_acceleration: float = 0.0  # metres a second squared; where all three are 0 velocities are not estimated
-    root_turn_acceleration: float = 0.0  # radians a second squared
-    turn_acceleration: float = 0.0  # radians a second squared
-    usual_weight: float = 0.0  # how strongly the body's usual angles are preferred; 1: as it states them
+    root_speed: float = 1.5  # metres a second
+    root_turn_speed: float = 3.0  # radians a second
+    turn_speed: float = 3.0  # radians a second, of every other joint
+    velocity_gain: float = 1.0  # share of the velocity that the prediction repeats
+    velocity_follow: float = 0.4  # for filters without a covariance: share of a surprise that the velocity takes up
+    root_acceleration: float = 12.0  # metres a second squared; where all three are 0, velocities are differences
+    root_turn_acceleration: float = 40.0  # radians a second squared
+    turn_acceleration: float = 80.0  # radians a second squared
+    usual_weight: float = 1.0  # how strongly the body's usual angles are preferred; 1: as it states them
 
     def __post_init__(self) -> None:
         for setting in fields(self):
@@ -43,7 +44,11 @@ class Motion:
         usual, usual_sd = body.usual
         usual_sd = usual_sd / np.sqrt(self.usual_weight) if self.usual_weight > 0 else np.full_like(usual_sd, np.inf)
         common = speeds, body.lower, body.upper, usual, usual_sd, self.velocity_gain
-        return NearlyConstantVelocity(*common, changes) if changes.any() else ConstantVelocity(*common)
+        return (
+            NearlyConstantVelocity(*common, changes, self.velocity_follow)
+            if changes.any()
+            else ConstantVelocity(*common)
+        )
 
 
 def _of_dofs(body: Body, place: float, root_turn: float, turn: float) -> np.ndarray:
@@ -55,9 +60,9 @@ def _of_dofs(body: Body, place: float, root_turn: float, turn: float) -> np.ndar
 
 
 #: At 25 frames a second: 10 mm, 1.5 degrees for the root, 2.5 degrees for the limbs; see docs/benchmarks.md.
-SEARCHING = Motion(root_speed=0.25, root_turn_speed=0.65, turn_speed=1.1)
-#: One camera sees neither how far away the person is nor whether a limb points towards it: only slowness holds these.
-ONE_CAMERA = Motion(root_speed=0.15, root_turn_speed=0.5, turn_speed=1.0, velocity_gain=0.0)
+SEARCHING = Motion(0.25, 0.65, 1.1, 0.5, 1.0, 0.0, 0.0, 0.0, 0.0)
+#: One camera sees neither how far away the person is nor whether a limb points towards it: what is usual holds these.
+ONE_CAMERA = Motion(usual_weight=3.0)
 
 
 def motion_of(method: str, cameras: int) -> Motion:

@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from muybridge.filters import METHODS, CommonConfig, ConstantVelocity, Info, State, Weights, annealed, guided
+from muybridge.filters import METHODS, CommonConfig, ConstantVelocity, Info, State, Weights, annealed, demc, guided
 from muybridge.likelihood.colour import ColourReference
 from muybridge.likelihood.observation import ImageLikelihood, Observation
 from muybridge.tracking.motion import Motion, motion_of
@@ -119,7 +119,7 @@ class Tracker:
         config = self.config.filter or METHODS[self.config.method].WORKING
         if isinstance(config, guided.Config) and not config.blocks and len(self.model.rig) > 1:
             config = replace(config, blocks=self._limbs()[1:])
-        if isinstance(config, annealed.Config) and config.by_limb and config.blocks is None:
+        if isinstance(config, annealed.Config | demc.Config) and config.by_limb and config.blocks is None:
             config = replace(config, blocks=self._limbs())
         return config
 
