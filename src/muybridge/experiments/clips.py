@@ -173,6 +173,3 @@ def _save(path: Path, arrays: dict[str, np.ndarray]) -> None:
     except BaseException:
         unfinished.unlink(missing_ok=True)
         raise
-
-
-

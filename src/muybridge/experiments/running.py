@@ -70,9 +70,15 @@ class Result:
     @staticmethod
     def from_dict(values: Mapping[str, Any]) -> Result:
         """The inverse of `asdict`, by way of JSON."""
-        filled = {name: float("nan") if value is None else value for name, value in values.items()}
-        inside = tuple(float("nan") if share is None else share for share in filled["inside"])
-        return Result(**{**filled, "inside": inside, "frame_mm": tuple(filled["frame_mm"])})
+        filled: dict[str, Any] = {name: _known(value) for name, value in values.items()}
+        for name in ("inside", "frame_mm"):
+            filled[name] = tuple(_known(value) for value in filled[name])
+        return Result(**filled)
+
+
+def _known(value: Any) -> Any:
+    """NaN for what JSON has as null."""
+    return float("nan") if value is None else value
 
 
 @dataclass(frozen=True, eq=False)
@@ -191,4 +197,3 @@ def _body_and_pose(trial: Trial, evidence: Evidence) -> tuple[Body, np.ndarray]:
         body = fitted(model, lambda seen, frame: observed(trial, evidence, seen, frame), pose, evidence).body
         pose = start_pose(body, evidence)
     return body, pose
-

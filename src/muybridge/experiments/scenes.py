@@ -53,9 +53,7 @@ def scene_of(clip: Clip) -> Scene:
     )
     if len(scene.rig) != clip.cameras or scene.frame_count != clip.frames:
         expected = f"{clip.cameras} cameras and {clip.frames} frames"
-        raise InputError(
-            f"preset {clip.preset!r}", expected=expected, got=f"{len(scene.rig)} and {scene.frame_count}"
-        )
+        raise InputError(f"preset {clip.preset!r}", expected=expected, got=f"{len(scene.rig)} and {scene.frame_count}")
     return scene
 
 

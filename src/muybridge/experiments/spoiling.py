@@ -12,7 +12,7 @@ CROSS = np.ones((3, 3), np.uint8)
 
 
 def spoilt_mask(mask: np.ndarray, fault: str, rng: np.random.Generator) -> np.ndarray:
-    """A mask (H, W) bool with a fault of `trial.MASK_FAULTS`: one pixel more or less, or discs cut out of the person."""
+    """A mask (H, W) bool with a fault of `trial.MASK_FAULTS`: one pixel more or less, or discs cut out."""
     if not fault or not mask.any():
         return mask
     if fault == "holes":

@@ -1,7 +1,7 @@
 """What one trial of an experiment is: a clip, what is seen of it, and who tracks it; frozen, with a digest.
 
-Two experiments that ask for the same trial share its result, and a run that was interrupted knows by the digest what it
-has. The digest covers the filter's settings as they are resolved, so that a default changed later counts as a new trial.
+Two experiments that ask for the same trial share its result, and a run that was interrupted knows by the digest what
+it has. The digest covers the filter's settings as they are resolved: a default changed later makes a new trial.
 """
 
 from __future__ import annotations
