@@ -48,6 +48,10 @@ class Scale:
             for motion in self.motions
         )
 
+    def few(self, seeds: int) -> int:
+        """How many seeds where a trial is dear: so many, and one for a quick look."""
+        return 1 if self.quick else seeds
+
     def walks(self, *, view: str = "ring", seeds: int | None = None, reduction: int | None = 2) -> tuple[Clip, ...]:
         """The walks among the clips."""
         return tuple(c for c in self.clips(view=view, seeds=seeds, reduction=reduction) if c.motion == "walk")

@@ -27,6 +27,7 @@ SUMMARY_NOTES = (
     "(Student's t over the seeds' means).",
     f"A frame counts at most {LOST_MM:.0f} mm; lost: a frame's mean error is above 200 mm.",
 )
+COLLAPSED = 100.0  # a factor above it says no more
 Value = Callable[[Row], float]
 
 
@@ -95,11 +96,12 @@ def coverage_table(name: str, title: str, groups: Mapping[str, Sequence[Row]]) -
     rows: list[tuple[Cell, ...]] = []
     for label, group in groups.items():
         inside = [over_seeds(values(group, lambda row, k=k: row.result.inside[k])) for k in range(len(LEVELS))]  # type: ignore[misc]
-        scale = float(np.nanmedian([row.result.scale for row in group]))
+        scale = min(float(np.nanmedian([row.result.scale for row in group])), COLLAPSED)
         spread = float(np.median([row.result.sd_mm for row in group]))
         rows.append((label, *inside, scale, error(group), spread))
     notes = (
         "Regions are balls of the stated standard deviation, chi with 3 degrees of freedom; below the level: too sure.",
-        "'Too small by' is the factor that would make the deviations right on average (median run).",
+        f"'Too small by' is the factor that would make the deviations right on average (median run); {COLLAPSED:.0f}: that or more, "
+        "the particles had collapsed onto one.",
     )
     return Table(name, title, columns, tuple(rows), notes)

@@ -14,8 +14,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 #: Curves, told apart by marker too: Okabe and Ito's colours.
-COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#7d8792", "#1d2126")
-MARKERS = ("o", "s", "^", "D", "v", "P", "X", "*")
+COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#7d8792", "#1d2126", "#8c510a", "#762a83")
+MARKERS = ("o", "s", "^", "D", "v", "P", "X", "*", "<", ">")
 
 
 def plot_intervals(
@@ -27,7 +27,7 @@ def plot_intervals(
     heading: str,
     detail: str = "mm, mean and 95 % interval",
     *,
-    marks: Mapping[str, float] | None = None,
+    targets: Sequence[tuple[float, float]] = (),
     theme: Theme = LIGHT,
 ) -> list[Artist]:
     """A dot and a line for each label, top to bottom; the means beside them.
@@ -37,8 +37,8 @@ def plot_intervals(
     labels : (n,) str
     means, lows, highs : (n,) float
         NaN bounds draw no line.
-    marks : label -> value, optional
-        Vertical lines, such as what must be reached.
+    targets : (n,) pairs of float, optional
+        What each must reach at least, and the aim: two short strokes.
     """
     places = np.arange(len(labels))
     bounds = np.array([lows, highs], float)
@@ -50,10 +50,12 @@ def plot_intervals(
         text = f"{mean:.0f}" if abs(mean) >= 10 else f"{mean:.1f}"
         ax.annotate(text, (edge, place), xytext=(5, 0), textcoords="offset points", va="center", fontsize=7.5,
                     color=theme.muted)  # fmt: skip
-    for label, value in (marks or {}).items():
-        artists.append(ax.axvline(value, color=theme.muted, linewidth=0.9, linestyle=(0, (3, 2))))
-        ax.annotate(label, (value, 1), xycoords=("data", "axes fraction"), xytext=(3, -3), textcoords="offset points",
-                    va="top", fontsize=7.5, color=theme.muted)  # fmt: skip
+    if targets:
+        least, aim = np.array(targets, float).T
+        stroke = {"marker": "|", "linestyle": "none", "markersize": 12, "markeredgewidth": 1.6}
+        artists += ax.plot(least, places, color=theme.warning, label="at least", **stroke)  # type: ignore[arg-type]
+        artists += ax.plot(aim, places, color=theme.accent, label="aim", **stroke)  # type: ignore[arg-type]
+        ax.legend(loc="lower right", labelcolor=theme.muted)
     ax.set_yticks(places, labels)
     ax.set_ylim(len(labels) - 0.4, -0.6)
     ax.grid(False, axis="y")
@@ -78,8 +80,10 @@ def plot_budgets(
     for (label, (evaluations, mean, low, high)), colour, marker in zip(curves.items(), COLOURS, MARKERS, strict=False):
         artists.append(ax.fill_between(evaluations, np.maximum(low, 1.0), high, color=colour, alpha=0.13, linewidth=0))
         artists += ax.plot(evaluations, mean, marker=marker, markersize=4.5, color=colour, label=label)
+    means = np.concatenate([mean for _, mean, _, _ in curves.values()])
     ax.set_xscale("log")
     ax.set_yscale("log")
+    ax.set_ylim(0.6 * means.min(), 1.8 * means.max())  # a band of two seeds must not flatten the curves
     _plain_ticks(ax, "x", (250, 500, 1000, 2000, 5000, 10000, 20000))
     _plain_ticks(ax, "y", (5, 10, 20, 50, 100, 200, 500, 1000))
     ax.set_xlabel("likelihood evaluations a frame")
@@ -163,7 +167,7 @@ def plot_error_curves(
     artists: list[Artist] = []
     for (label, errors), colour in zip(curves.items(), COLOURS, strict=False):
         artists += ax.plot(times, errors, color=colour, label=label)
-    ax.set_ylim(bottom=0)
+    ax.set_ylim(0.0, 1.05 * max(float(errors.max()) for errors in curves.values()))
     ax.margins(x=0.0)
     ax.set_xlabel("time (s)")
     ax.legend(loc="best", labelcolor=theme.muted)
@@ -172,7 +176,7 @@ def plot_error_curves(
 
 
 def _plain_ticks(ax: Axes, axis: str, candidates: Sequence[float]) -> None:
-    """Numbers as people write them on a logarithmic axis, those inside its limits."""
+    """Numbers as people write them on a logarithmic axis; those inside its limits."""
     from matplotlib.ticker import NullFormatter, NullLocator
 
     low, high = ax.get_xlim() if axis == "x" else ax.get_ylim()

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,7 +15,7 @@ from muybridge.experiments.du_2005.conditions import (
     FILTERS,
     NAMES,
     SHAPES,
-    THREE_CUES,
+    SILHOUETTE,
     at_budget,
     at_shape,
     over,
@@ -26,6 +28,9 @@ from muybridge.experiments.summaries import coverage_table, difference_table, er
 from muybridge.experiments.trial import Clip, Trial
 from muybridge.plotting.experiments import plot_budgets, plot_coverage, plot_intervals
 from muybridge.plotting.style import new_figure
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 VIEWS = {"ring": "three cameras", "side": "one camera from the side"}
 REFERENCE = "DE-MC 500 x 7"
@@ -50,7 +55,7 @@ def budget_cases(scale: Scale) -> Iterator[Case]:
         for label, trial in conditions(clips[0]).items():
             yield from over(clips, label, trial)
         for method, name in NAMES.items():
-            few = scale.clips(view=view, seeds=PRINTED_SEEDS)
+            few = scale.clips(view=view, seeds=scale.few(PRINTED_SEEDS))
             yield from over(few, f"{name}, printed", printed(method, few[0]))
 
 
@@ -65,7 +70,9 @@ def budget_report(outcome: Outcome) -> Report:
     return Report(tuple(tables), figures)
 
 
-def interval_figure(groups: Mapping[str, Sequence[Row]], heading: str, marks: Mapping[str, float] | None = None):
+def interval_figure(
+    groups: Mapping[str, Sequence[Row]], heading: str, targets: Sequence[tuple[float, float]] = ()
+) -> Figure:
     """Errors of the groups as dots and lines."""
     found = [error(rows) for rows in groups.values()]
     figure, axes = new_figure(height=1.1 + 0.3 * len(groups))
@@ -76,7 +83,7 @@ def interval_figure(groups: Mapping[str, Sequence[Row]], heading: str, marks: Ma
         [interval.low for interval in found],
         [interval.high for interval in found],
         heading,
-        marks=marks,
+        targets=targets,
     )
     return figure
 
@@ -93,14 +100,14 @@ def curve_cases(scale: Scale) -> Iterator[Case]:
 
 def curve_report(outcome: Outcome) -> Report:
     """Error against evaluations as they were counted, one panel a view."""
-    figure, axes = new_figure(1, 2, width=9.5, height=3.8, sharey=True)
+    figure, axes = new_figure(1, 2, width=9.5, height=3.8)
     tables = []
     for ax, (view, seen) in zip(axes[0], VIEWS.items(), strict=True):
         groups = outcome.groups(outcome.of_view(view))
         plot_budgets(ax, {method: _curve(rows) for method, rows in groups.items()}, f"Walking, {seen}")
-        labelled = {f"{row.case.label} at {row.case.x:.0f}": [] for row in outcome.of_view(view)}  # type: ignore[var-annotated]
+        labelled: dict[str, list[Row]] = {}
         for row in outcome.of_view(view):
-            labelled[f"{row.case.label} at {row.case.x:.0f}"].append(row)
+            labelled.setdefault(f"{row.case.label} at {row.case.x:.0f}", []).append(row)
         tables.append(summary_table(f"budgets-{view}", f"Error against evaluations, walking, {seen}", labelled))
     return Report(tuple(tables), {"budgets": figure})
 
@@ -134,19 +141,12 @@ LADDER: tuple[tuple[str, dict, dict, bool], ...] = (
 def printed_cases(scale: Scale) -> Iterator[Case]:
     """DE-MC 500 x 7 up the ladder, on walks seen by three cameras and by one."""
     for view in VIEWS:
-        clips = scale.walks(view=view, seeds=PRINTED_SEEDS)
+        clips = scale.walks(view=view, seeds=scale.few(PRINTED_SEEDS))
         trial = printed("demc", clips[0], **SHAPES["demc"])
         for label, settings, moving, three in LADDER:
             trial = trial.with_settings(**settings).with_motion(**moving)
-            cued = trial if three else _silhouette(trial)
+            cued = trial if three else replace(trial, cues=SILHOUETTE)
             yield from over(clips, label, cued)
-
-
-def _silhouette(trial: Trial) -> Trial:
-    from dataclasses import replace
-
-    assert trial.cues == THREE_CUES
-    return replace(trial, cues=type(trial.cues)())
 
 
 def printed_report(outcome: Outcome) -> Report:

@@ -33,7 +33,7 @@ def layer_report(outcome: Outcome) -> Report:
     """Error over the clip and at frame 36, for each view."""
     tables, figures = [], {}
     frame = min(FRAME, outcome.scale.frames - 1)
-    figure, axes = new_figure(1, 2, width=9.5, height=3.2, sharey=True)
+    figure, axes = new_figure(1, 2, width=9.5, height=3.2)
     for ax, (view, seen) in zip(axes[0], VIEWS.items(), strict=True):
         groups = outcome.groups(outcome.of_view(view))
         tables.append(summary_table(f"E2-{view}", f"E2: layers of DE-MC with 500 particles, {seen}", groups))
@@ -102,7 +102,7 @@ def choice_report(outcome: Outcome) -> Report:
 
 def sigma_as_printed(scale: Scale) -> Iterator[Case]:
     """Both readings of (6.20), everything else printed."""
-    clips = scale.walks(seeds=3)
+    clips = scale.walks(seeds=scale.few(3))
     for adaptation in ("raw_likelihood", "effective_sample_size", "off"):
         yield from over(clips, f"printed, sigma {adaptation}", printed("demc", clips[0], adaptation=adaptation))
 
