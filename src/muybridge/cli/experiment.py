@@ -51,11 +51,12 @@ def experiment(
     asked, scale = find(name), scale_of(quick, seeds)
     folder = out or Path("runs") / name
     parts = [part.strip() for part in only.split(",") if part.strip()]
-    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    if workers is None:
+        workers = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
     try:
         with reporting.progress(name) as progress:
             summary = run_experiment(
-                asked, scale, folder, only=parts, workers=workers or cores, resume=resume, progress=progress
+                asked, scale, folder, only=parts, workers=workers, resume=resume, progress=progress
             )
     except KeyboardInterrupt:
         raise KeyboardInterrupt(f"interrupted; finished trials are kept in {folder}, go on with --resume") from None

@@ -101,7 +101,7 @@ def coverage_table(name: str, title: str, groups: Mapping[str, Sequence[Row]]) -
         rows.append((label, *inside, scale, error(group), spread))
     notes = (
         "Regions are balls of the stated standard deviation, chi with 3 degrees of freedom; below the level: too sure.",
-        f"'Too small by' is the factor that would make the deviations right on average (median run); {COLLAPSED:.0f}: that or more, "
-        "the particles had collapsed onto one.",
+        "'Too small by' is the factor that would make the deviations right on average (median run); "
+        f"{COLLAPSED:.0f}: that or more, the particles had collapsed onto one.",
     )
     return Table(name, title, columns, tuple(rows), notes)

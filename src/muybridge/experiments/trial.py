@@ -45,7 +45,8 @@ class Clip:
     def __post_init__(self) -> None:
         _one_of("clip: view", self.view, ("ring", "side"))
         _at_least_one("clip: cameras", self.cameras)
-        _at_least_one("clip: frames", self.frames)
+        if self.frames < 2:
+            raise InputError("clip: frames", expected="at least 2", got=str(self.frames))
 
     @property
     def digest(self) -> str:

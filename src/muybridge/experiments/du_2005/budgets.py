@@ -10,7 +10,6 @@ import numpy as np
 
 from muybridge.evaluation.calibration import LEVELS
 from muybridge.experiments.du_2005.conditions import (
-    AT_SHAPE,
     BUDGETS,
     FILTERS,
     NAMES,
@@ -20,6 +19,7 @@ from muybridge.experiments.du_2005.conditions import (
     at_shape,
     over,
     printed,
+    shape_settings,
     working,
 )
 from muybridge.experiments.experiment import Case, Outcome, Part, Report, Row, Scale
@@ -125,28 +125,33 @@ def _curve(rows: Sequence[Row]) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.
     return columns[0], columns[1], columns[2], columns[3]
 
 
-#: One change after another, from what is printed to what works: label, filter settings, motion settings, what is shown.
-LADDER: tuple[tuple[str, dict, dict, bool], ...] = (
-    ("as printed", {}, {}, True),
-    ("+ velocity at half gain", {}, {"velocity_gain": 0.5}, True),
-    ("+ likelihood 1000 times as sharp", {"sharpness": 1000.0}, {}, True),
-    ("+ silhouette alone, two-sided", {}, {}, False),
-    ("+ noise before the moves", {"dynamics_noise": AT_SHAPE["demc"]["dynamics_noise"]}, {}, False),
-    ("+ jumps of constant size, c = 0.3", {"adaptation": "off", "c": AT_SHAPE["demc"]["c"]}, {}, False),
-    ("+ lambda 0.27, other half", {"difference_scale": 0.27, "partners": "other_half"}, {}, False),
-    ("+ mean, systematic", {"estimate": "mean", "resampling": "systematic"}, {}, False),
-)
+def ladder(clip: Clip) -> Iterator[tuple[str, Trial]]:
+    """DE-MC 500 x 7, one change after another, from what is printed to what works."""
+    end = shape_settings("demc", clip)
+    trial = printed("demc", clip, **SHAPES["demc"])
+    yield "as printed", trial
+    trial = trial.with_motion(velocity_gain=0.5)
+    yield "+ velocity at half gain", trial
+    trial = trial.with_settings(sharpness=end["sharpness"])
+    yield f"+ likelihood {end['sharpness']:.0f} times as sharp", trial
+    trial = replace(trial, cues=SILHOUETTE)
+    yield "+ silhouette alone, two-sided", trial
+    for label, settings in (
+        (f"+ noise before the moves, {end['dynamics_noise']:g}", {"dynamics_noise": end["dynamics_noise"]}),
+        (f"+ jumps of constant size, c = {end['c']:g}", {"adaptation": "off", "c": end["c"]}),
+        ("+ lambda 0.27, other half", {"difference_scale": 0.27, "partners": "other_half"}),
+        ("+ mean, systematic", {"estimate": "mean", "resampling": "systematic"}),
+    ):
+        trial = trial.with_settings(**settings)
+        yield label, trial
 
 
 def printed_cases(scale: Scale) -> Iterator[Case]:
-    """DE-MC 500 x 7 up the ladder, on walks seen by three cameras and by one."""
+    """The ladder on walks seen by three cameras and by one."""
     for view in VIEWS:
         clips = scale.walks(view=view, seeds=scale.few(PRINTED_SEEDS))
-        trial = printed("demc", clips[0], **SHAPES["demc"])
-        for label, settings, moving, three in LADDER:
-            trial = trial.with_settings(**settings).with_motion(**moving)
-            cued = trial if three else replace(trial, cues=SILHOUETTE)
-            yield from over(clips, label, cued)
+        for label, trial in ladder(clips[0]):
+            yield from over(clips, label, trial)
 
 
 def printed_report(outcome: Outcome) -> Report:

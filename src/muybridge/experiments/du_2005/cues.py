@@ -29,7 +29,7 @@ TURN, MOVE = 0.1, 0.03  # radians and metres: a search's way, not the peak's rou
 THESIS_CUES = ("silhouette", "colour", "boundary")
 #: How far a cue's log likelihood falls round the true pose: `measured_falls` on a walk, three cameras at 320 x 240.
 FALLS = {"silhouette": 0.48, "colour": 0.70, "boundary": 0.71, "edges": 0.155}
-SHARPNESS = 1000.0 * 0.23  # of the working settings, times how far their two-sided silhouettes fall
+SHARPNESS = 200.0 * 0.23  # of the settings at the thesis' shape, times how far their two-sided silhouettes fall
 
 
 def measured_falls(evidence: Evidence, rng: np.random.Generator, poses: int = 200) -> dict[str, float]:
