@@ -45,6 +45,7 @@ class TestJudged:
         assert found.mean_mm == pytest.approx(50.0) and found.root_mm == pytest.approx(0.0, abs=1e-9)
         assert found.angle_deg == pytest.approx(0.0, abs=1e-9)
         assert found.frame_mm == (50.0,) * len(walk.joints)
+        assert (found.place_mm, found.legs_mm, found.arms_mm) == pytest.approx((50.0, 50.0, 50.0))
         # 50 mm is 2.5 deviations of 20 mm: outside the balls of 1.54 and 2.15, inside that of 2.80.
         assert found.inside == (0.0, 0.0, 1.0)
         assert found.scale == pytest.approx(2.5 / np.sqrt(3)) and found.sd_mm == pytest.approx(20.0)
@@ -53,6 +54,14 @@ class TestJudged:
         found = judged(tracked(walk, (0.201, 0.0, 0.0)), walk)
         assert found.lost_share == 1.0 and found.lost_wrists == 1.0
         assert judged(tracked(walk, (0.199, 0.0, 0.0)), walk).lost_share == 0.0
+
+
+def test_exchanged_legs_are_seen(walk: Evidence) -> None:
+    truth = walk.truth
+    names = tuple({"left": "right", "right": "left"}.get(n.partition("_")[0], "") + "_" + n.partition("_")[2]
+                  if n.endswith(("knee", "ankle")) else n for n in truth.names)  # fmt: skip
+    crossed = replace(tracked(walk), series=replace(truth, names=names))
+    assert judged(crossed, walk).swapped_share > 0.5 and judged(tracked(walk), walk).swapped_share == 0.0
 
 
 def test_an_elbow_turned_by_ten_degrees_is_an_eighth_of_ten_degrees(walk: Evidence) -> None:

@@ -42,6 +42,14 @@ class TestStore:
         lines = (tmp_path / ROWS_FILE).read_text().splitlines()
         assert [json.loads(line)["digest"] for line in lines] == [FIRST.digest, SECOND.digest]
 
+    def test_lines_of_another_version_are_left_alone(self, tmp_path: Path) -> None:
+        (tmp_path / ROWS_FILE).write_text('{"digest": "x", "result": {"old": 1}}\n')
+        with Store(tmp_path) as store:
+            store.append(FIRST, result())
+        with Store(tmp_path) as store:
+            assert FIRST in store and len(store) == 1
+        assert (tmp_path / ROWS_FILE).read_text().startswith('{"digest": "x"')
+
     def test_a_line_says_what_was_run(self, tmp_path: Path) -> None:
         with Store(tmp_path) as store:
             store.append(FIRST, result())

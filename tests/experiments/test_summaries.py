@@ -4,7 +4,7 @@ import pytest
 
 from experiments.made_results import row
 from muybridge.experiments.statistics import Interval
-from muybridge.experiments.summaries import coverage_table, difference_table, summary_table, verdict
+from muybridge.experiments.summaries import coverage_table, difference_table, parts_table, summary_table, verdict
 
 GROUPS = {
     "one": [row("one", seed, error) for seed, error in ((0, 30.0), (1, 110.0), (2, 70.0))],
@@ -26,6 +26,12 @@ def test_differences_are_paired() -> None:
     assert label == "one" and isinstance(gap, Interval) and reading == "worse"
     assert gap.mean == pytest.approx(9.333, abs=1e-3) and gap.half_width == pytest.approx(1.434, abs=1e-3)
     assert difference_table("t", "T", GROUPS, "one").rows[0][2] == "better"
+
+
+def test_parts() -> None:
+    first = parts_table("t", "T", GROUPS).rows[0]
+    assert [cell.mean for cell in first[1:4]] == pytest.approx([35.0, 70.0, 140.0])  # type: ignore[union-attr]
+    assert first[4] == 0.25
 
 
 def test_verdict() -> None:

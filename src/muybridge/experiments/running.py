@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from muybridge.body import Body
-from muybridge.evaluation import joint_errors
+from muybridge.evaluation import JointErrors, joint_errors
 from muybridge.evaluation.angles import joint_angles
 from muybridge.experiments.bodies import body_of_trial, fitted, start_pose
 from muybridge.experiments.clips import Evidence, evidence_of
@@ -24,6 +24,9 @@ from muybridge.likelihood.observation import ImageLikelihood, Observation
 from muybridge.tracking.tracker import Tracker, TrackerConfig
 
 EVIDENCE, TRACKS, SCENES = "evidence", "tracks", "scenes"  # folders of an experiment
+PLACE = ("pelvis",)
+LEGS = ("left_knee", "right_knee", "left_ankle", "right_ankle")
+ARMS = ("left_elbow", "right_elbow", "left_wrist", "right_wrist")
 
 
 @dataclass(frozen=True)
@@ -40,6 +43,10 @@ class Result:
         Share of frames with a mean error above 200 mm.
     lost_wrists : float
         Share of frames and wrists above 200 mm.
+    place_mm, legs_mm, arms_mm : float
+        Mean error of the pelvis, of knees and ankles, of elbows and wrists, alignment none.
+    swapped_share : float
+        Share of frames in which the legs fit better exchanged.
     inside : (3,) float
         Share of true joints inside the stated 50, 80 and 95 % regions; NaN where no deviation was stated.
     scale : float
@@ -59,6 +66,10 @@ class Result:
     angle_deg: float
     lost_share: float
     lost_wrists: float
+    place_mm: float
+    legs_mm: float
+    arms_mm: float
+    swapped_share: float
     inside: tuple[float, float, float]
     scale: float
     sd_mm: float
@@ -156,6 +167,10 @@ def judged(tracked: Tracked, evidence: Evidence) -> Result:
         angle_deg=angle_error(tracked.series, evidence.truth),
         lost_share=free.lost_share,
         lost_wrists=float(np.mean(list(free.lost_wrists.values()))) if free.lost_wrists else nan,
+        place_mm=_mean_of(free, PLACE),
+        legs_mm=_mean_of(free, LEGS),
+        arms_mm=_mean_of(free, ARMS),
+        swapped_share=len(free.swapped_frames) / len(free.frames),
         inside=(inside[0], inside[1], inside[2]),
         scale=calibration.scale if calibration else nan,
         sd_mm=1000.0 * float(np.median(tracked.series.sd)),
@@ -164,6 +179,12 @@ def judged(tracked: Tracked, evidence: Evidence) -> Result:
         status=tracked.status,
         frame_mm=tuple(round(float(value), 2) for value in free.frame_means_mm),
     )
+
+
+def _mean_of(errors: JointErrors, names: tuple[str, ...]) -> float:
+    """Mean error of some joints over all frames, mm; NaN where the body has none of them."""
+    columns = [j for j, joint in enumerate(errors.joints) if joint.joint in names]
+    return float(np.nanmean(errors.errors_mm[:, columns])) if columns else float("nan")
 
 
 def angle_error(estimate: JointSeries, truth: JointSeries) -> float:

@@ -31,12 +31,11 @@ class Store:
         if self.path.is_file():
             with disk_errors(self.path):
                 data = self.path.read_bytes()
-            for line in data.splitlines(keepends=True):
+            whole = data.rfind(b"\n") + 1
+            for line in data[:whole].splitlines():
                 entry = _entry(line)
-                if entry is None:
-                    break
-                self._results[entry[0]] = entry[1]
-                whole += len(line)
+                if entry is not None:
+                    self._results[entry[0]] = entry[1]
         with disk_errors(self.path):
             self._file = open(self.path, "ab")
             self._file.truncate(whole)
@@ -124,9 +123,7 @@ def _described(configuration: dict[str, Any]) -> str:
 
 
 def _entry(line: bytes) -> tuple[str, Result] | None:
-    """A whole line's digest and result; None where it was torn or is none of ours."""
-    if not line.endswith(b"\n"):
-        return None
+    """A line's digest and result; None where it is of another version, which is left alone."""
     try:
         entry = json.loads(line)
         return str(entry["digest"]), Result.from_dict(entry["result"])

@@ -63,6 +63,33 @@ def _summary(label: str, rows: Sequence[Row]) -> tuple[Cell, ...]:
     )
 
 
+def parts_table(name: str, title: str, groups: Mapping[str, Sequence[Row]]) -> Table:
+    """Where the error is: the place, the legs, the arms; and how often the legs are exchanged."""
+
+    def of(rows: Sequence[Row], value: Value) -> Interval:
+        return over_seeds(values(rows, lambda row: min(value(row), LOST_MM)))
+
+    columns = (
+        Column("condition"),
+        Column("pelvis mm"),
+        Column("knees and ankles mm"),
+        Column("elbows and wrists mm"),
+        Column("legs exchanged", 1, percent=True),
+    )
+    rows: list[tuple[Cell, ...]] = [
+        (
+            label,
+            of(group, lambda row: row.result.place_mm),
+            of(group, lambda row: row.result.legs_mm),
+            of(group, lambda row: row.result.arms_mm),
+            float(np.mean([row.result.swapped_share for row in group])),
+        )
+        for label, group in groups.items()
+    ]
+    note = f"Means over runs, each counting at most {LOST_MM:.0f} mm; exchanged: by more than 50 mm better so."
+    return Table(name, title, columns, tuple(rows), (note,))
+
+
 def difference_table(name: str, title: str, groups: Mapping[str, Sequence[Row]], reference: str) -> Table:
     """Each group minus the reference on the same scene and seed, mm: negative is better than the reference."""
     against = values(groups[reference], lambda row: row.error_mm)

@@ -24,7 +24,7 @@ from muybridge.experiments.du_2005.conditions import (
 )
 from muybridge.experiments.experiment import Case, Outcome, Part, Report, Row, Scale
 from muybridge.experiments.statistics import over_seeds
-from muybridge.experiments.summaries import coverage_table, difference_table, error, summary_table, values
+from muybridge.experiments.summaries import coverage_table, difference_table, error, parts_table, summary_table, values
 from muybridge.experiments.trial import Clip, Trial
 from muybridge.plotting.experiments import plot_budgets, plot_coverage, plot_intervals
 from muybridge.plotting.style import new_figure
@@ -66,6 +66,7 @@ def budget_report(outcome: Outcome) -> Report:
         groups = outcome.groups(outcome.of_view(view))
         tables.append(summary_table(f"E1-{view}", f"E1, {seen}", groups))
         tables.append(difference_table(f"E1-{view}-paired", f"E1, {seen}: differences", groups, REFERENCE))
+        tables.append(parts_table(f"E1-{view}-parts", f"E1, {seen}: where the error is", groups))
         figures[f"E1-{view}"] = interval_figure(groups, f"E1: {seen}")
     return Report(tuple(tables), figures)
 

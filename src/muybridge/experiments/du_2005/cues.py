@@ -20,7 +20,7 @@ from muybridge.experiments.du_2005.budgets import interval_figure
 from muybridge.experiments.du_2005.conditions import THREE_CUES, at_shape, over
 from muybridge.experiments.experiment import Case, Outcome, Part, Report, Scale
 from muybridge.experiments.scenes import right_body
-from muybridge.experiments.summaries import difference_table, summary_table
+from muybridge.experiments.summaries import difference_table, parts_table, summary_table
 from muybridge.likelihood.cues import CueWeights
 from muybridge.likelihood.observation import ImageLikelihood
 
@@ -87,6 +87,7 @@ def cue_report(outcome: Outcome) -> Report:
         (
             summary_table("E3", "E3: cues, DE-MC 500 x 7, three cameras, walking", groups),
             difference_table("E3-paired", "E3: differences", groups, "silhouette"),
+            parts_table("E3-parts", "E3: where the error is", groups),
         ),
         {"E3": interval_figure(groups, "E3: cues")},
     )

@@ -19,7 +19,6 @@ from muybridge.experiments.scenes import right_body
 from muybridge.experiments.tables import Cell, Column, Table
 from muybridge.experiments.trial import Clip
 from muybridge.io.run_folder import read_joints
-from muybridge.likelihood.boundary import COEFFICIENTS, descriptors_of
 from muybridge.likelihood.cues import CueWeights
 from muybridge.likelihood.observation import ImageLikelihood
 from muybridge.plotting.angles import plot_joint_angles
@@ -167,5 +166,3 @@ def angle_report(outcome: Outcome) -> Report:
 SURFACE = Part("surface", "The likelihood over two degrees of freedom (Fig. 5.4)", surface_report)
 DESCRIPTORS = Part("descriptors", "Fourier descriptors of poses (Fig. 5.3)", distance_report)
 ANGLES = Part("angles", "Joint angles against the truth (Fig. 7.7)", angle_report, angle_cases)
-
-__all__ = ["ANGLES", "COEFFICIENTS", "DESCRIPTORS", "SURFACE", "descriptors_of"]

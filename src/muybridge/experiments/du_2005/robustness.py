@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 
-from muybridge.experiments.du_2005.budgets import DEFAULT, interval_figure
-from muybridge.experiments.du_2005.conditions import NAMES, at_budget, at_shape, over, working
+from muybridge.experiments.du_2005.budgets import interval_figure
+from muybridge.experiments.du_2005.conditions import at_budget, at_shape, over, working
 from muybridge.experiments.experiment import Case, Outcome, Part, Report, Scale
 from muybridge.experiments.summaries import coverage_table, difference_table, summary_table
 from muybridge.experiments.trial import Faults, Trial
@@ -89,5 +89,3 @@ def target_report(outcome: Outcome) -> Report:
 
 MATTERS = Part("matters", "What matters: wrong bodies, worse masks, cameras that are off", fault_report, fault_cases)
 REACH = Part("reach", "What must be reached", target_report, target_cases)
-
-__all__ = ["DEFAULT", "MATTERS", "NAMES", "REACH"]
