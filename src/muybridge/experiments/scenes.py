@@ -15,6 +15,7 @@ from muybridge.cameras.model import Rig
 from muybridge.errors import InputError
 from muybridge.experiments.trial import Clip
 from muybridge.synthetic import motion as motions
+from muybridge.synthetic import skinning
 from muybridge.synthetic.motion import Motion, perform
 from muybridge.synthetic.rigs import looking_at, ring
 from muybridge.synthetic.room import Room
@@ -23,7 +24,7 @@ from muybridge.synthetic.skinning import load_figure
 
 #: In this order motions are taken for experiments; the thesis has walking and hopping.
 PREFERRED_MOTIONS = ("walk", "hop", "wave", "jog", "turn", "crouch")
-PREFERRED_FIGURES = ("man", "woman")
+PREFERRED_FIGURES = ("man", "woman", "heavy_man")
 TRIES, EDGE = 200, 16.0  # draws of a scene; pixels that the joints stay inside the picture
 SIDE_DISTANCE = 4.2  # metres, of the camera that looks across the path
 
@@ -36,20 +37,34 @@ def known_motions() -> tuple[str, ...]:
 
 def known_figures() -> tuple[str, ...]:
     """The baked people, in the order in which experiments take them."""
-    folder = resources.files("muybridge.synthetic") / "bodies"
-    names = sorted(entry.name[:-4] for entry in folder.iterdir() if entry.name.endswith(".npz"))
+    names = _figure_names()
     return tuple(n for n in PREFERRED_FIGURES if n in names) + tuple(n for n in names if n not in PREFERRED_FIGURES)
+
+
+def _figure_names() -> list[str]:
+    named = getattr(skinning, "figure_names", None)
+    if named is not None:
+        return list(named())
+    folder = resources.files("muybridge.synthetic") / "bodies"
+    return sorted(entry.name[:-4] for entry in folder.iterdir() if entry.name.endswith(".npz"))
 
 
 @lru_cache(maxsize=8)
 def scene_of(clip: Clip) -> Scene:
     """The scene of a clip: everything else than what the clip says follows from its seed."""
     presets: Any = _optional("muybridge.synthetic.presets")
-    motion = Motion(clip.motion, clip.frames / clip.rate, clip.rate, seed=clip.seed)
+    duration = clip.frames / clip.rate
     if presets is None:
-        return _plain_scene(clip, motion)
+        return _plain_scene(clip, Motion(clip.motion, duration, clip.rate, seed=clip.seed))
     scene = presets.preset_scene(
-        clip.preset, seed=clip.seed, figure=clip.figure, motion=motion, cameras=clip.cameras, view=clip.view
+        clip.preset,
+        seed=clip.seed,
+        figure=clip.figure,
+        motion=clip.motion,
+        cameras=clip.cameras,
+        view=clip.view,
+        duration=duration,
+        rate=clip.rate,
     )
     if len(scene.rig) != clip.cameras or scene.frame_count != clip.frames:
         expected = f"{clip.cameras} cameras and {clip.frames} frames"
