@@ -19,7 +19,7 @@ from muybridge.synthetic import skinning
 from muybridge.synthetic.motion import Motion, perform
 from muybridge.synthetic.rigs import looking_at, ring
 from muybridge.synthetic.room import Room
-from muybridge.synthetic.scene import OUTFITS, Person, Scene
+from muybridge.synthetic.scene import Person, Scene
 from muybridge.synthetic.skinning import load_figure
 
 #: In this order motions are taken for experiments; the thesis has walking and hopping.
@@ -92,12 +92,11 @@ def _plain_scene(clip: Clip, motion: Motion) -> Scene:
     """An ordinary room; walked through in any direction, or across the picture of a camera to the side."""
     rng = np.random.default_rng([clip.seed, 20052])
     figure = load_figure(clip.figure)
-    outfit = OUTFITS[rng.integers(len(OUTFITS))]
     for _ in range(TRIES):
         moved, rig = _staged(rng, clip, motion)
         if _in_view(rig, perform(figure, moved).joints):
             room = Room(floor=str(rng.choice(["planks", "tiles"])), seed=clip.seed)
-            return Scene(rig, Person(clip.figure, moved, outfit), room, seed=clip.seed)
+            return Scene(rig, Person(clip.figure, moved), room, seed=clip.seed)
     raise InputError(f"clip {clip.motion!r}", expected="a motion that stays in view", got=f"none of {TRIES} draws did")
 
 
