@@ -39,10 +39,13 @@ def tracked_by_job(trial: Trial, evidence: Evidence, folder: Path) -> Tracked:
 def job_of_trial(job: Job, trial: Trial) -> Job:
     """The scene's own job with the trial's filter, cues, motion and seed, started from the true first pose."""
     cues = trial.cues
+    moving = {name: value for name, value in asdict(trial.motion).items() if name in MotionInput.__struct_fields__}
     return msgspec.structs.replace(
         job,
         start=StartInput(pose="reference"),
-        filter=FilterInput(name=trial.method, settings=dict(trial.settings)),
+        filter=FilterInput(
+            name=trial.method, preset="printed" if trial.printed else "working", settings=dict(trial.settings)
+        ),
         likelihood=LikelihoodInput(
             silhouette=cues.silhouette,
             colour=cues.colour,
@@ -50,6 +53,6 @@ def job_of_trial(job: Job, trial: Trial) -> Job:
             edges=cues.edges,
             silhouette_kind=cues.silhouette_kind,  # type: ignore[arg-type]  # checked by CueWeights
         ),
-        motion=MotionInput(**asdict(trial.motion)),
+        motion=MotionInput(**moving),
         seed=trial.seed,
     )
