@@ -28,7 +28,8 @@ NAMES = {
 }
 #: What works at the thesis' shape, in place of the working settings that belong to another one: seven layers have to
 #: carry DE-MC as far as 82 do, so they start from wider noise, jump further, and keep more members alive. Compared on
-#: four walks of 36 frames (seeds 11 and 12, one run each): sharpness 50 to 3000, noise 0.8 and 1.2, c 0.1 to 0.5, lambda 0.15 to 0.5.
+#: four walks of 36 frames (seeds 11 and 12, one run each): sharpness 50 to 3000, noise 0.8 and 1.2, c 0.1 to 0.5,
+#: lambda 0.15 to 0.5.
 AT_SHAPE: dict[str, dict[str, Any]] = {
     "condensation": {},
     "annealed": {"by_limb": False},
