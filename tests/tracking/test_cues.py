@@ -89,6 +89,20 @@ class TestEveryMixture:
         assert here > away
 
 
+def test_colour_counts_segments_by_area_or_all_alike(plain, start, frames) -> None:
+    """The switch reaches the cue: both prefer the person, and they differ."""
+    pictures, masks = frames[0]
+    poses = np.stack([start, start + np.eye(len(start))[0] * 0.3])
+    values = []
+    for by_area in (True, False):
+        cues = CueWeights(silhouette=0.0, colour=1.0, colour_by_area=by_area)
+        observed = replace(plain, cues=cues).observe(masks, pictures)
+        observed = replace(observed, reference=observed.first_reference(start))
+        values.append(observed.log_prob(poses))
+        assert values[-1][0] > values[-1][1]
+    assert not np.allclose(*values)
+
+
 class TestTheDefault:
     def test_is_the_two_sided_silhouette_to_the_bit(self, plain, start, frames) -> None:
         observed = plain.observe(frames[0][1])

@@ -21,6 +21,7 @@ COMMANDS = {
     "synth": ("synth:synth", "Render a scene with known truth, for track."),
     "evaluate": ("evaluate:evaluate", "Compare a run with the truth: error per joint in mm."),
     "report": ("report:report", "Write a run's report and plots into its folder."),
+    "experiment": ("experiment:experiment", "Run a paper's experiments on scenes with known truth."),
     "bench": ("bench:bench", "Measure how fast the parts are on this machine."),
     "doctor": ("doctor:doctor", "Say what is installed and whether it works."),
 }

@@ -26,6 +26,7 @@ class CueWeights:
     """Powers of the cues, (5.12); 0 switches a cue off. Only their ratios count: they are made to sum to 1.
 
     silhouette_kind : a key of `silhouette.KINDS`
+    colour_by_area : segments count by their visible area, (5.5), or all alike, (5.3)
     """
 
     silhouette: float = 1.0
@@ -33,6 +34,7 @@ class CueWeights:
     boundary: float = 0.0
     edges: float = 0.0
     silhouette_kind: str = "two-sided"
+    colour_by_area: bool = True
 
     def __post_init__(self) -> None:
         given = self.by_name
@@ -126,7 +128,14 @@ def colour_cue(frame: Frame, camera_weights: np.ndarray) -> ColourCue:
     if frame.reference is None:
         remedy = "measure one with Observation.first_reference"
         raise InputError("colour cue", expected="a reference", got="none", remedy=remedy)
-    return ColourCue(frame.body.arrays, frame.cameras, frame.tables, frame.reference, weights=camera_weights)
+    return ColourCue(
+        frame.body.arrays,
+        frame.cameras,
+        frame.tables,
+        frame.reference,
+        by_area=frame.cues.colour_by_area,
+        weights=camera_weights,
+    )
 
 
 def boundary_cue(frame: Frame, camera_weights: np.ndarray) -> BoundaryCue:

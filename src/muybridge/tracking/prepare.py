@@ -170,6 +170,11 @@ def reductions_of(job: Job, rig: Rig, body: Body) -> tuple[int, ...]:
     """How much each camera's pictures are reduced: as the job says, or to `PERSON_ROWS` rows for the person."""
     if job.likelihood.reduction is not None:
         return (job.likelihood.reduction,) * len(rig)
+    return reductions_for(rig, body)
+
+
+def reductions_for(rig: Rig, body: Body) -> tuple[int, ...]:
+    """How much each camera's pictures are reduced so that the person has about `PERSON_ROWS` rows."""
     focus = _focus(rig)
     out = []
     for camera in rig:

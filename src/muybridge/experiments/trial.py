@@ -1,0 +1,162 @@
+"""What one trial of an experiment is: a clip, what is seen of it, and who tracks it; frozen, with a digest.
+
+Two experiments that ask for the same trial share its result, and a run that was interrupted knows by the digest what
+it has. The digest covers the filter's settings as they are resolved: a default changed later makes a new trial.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field, replace
+from typing import Any
+
+from muybridge.errors import InputError
+from muybridge.filters import method
+from muybridge.filters.state import CommonConfig
+from muybridge.io.run_log import job_digest
+from muybridge.likelihood.cues import CueWeights
+from muybridge.tracking.motion import SEARCHING, Motion, motion_of
+
+VERSION = 1  # raise it when a trial of the same description gives another result
+MASKS, MASK_FAULTS = ("own", "true", "job"), ("", "eroded", "dilated", "holes")
+BODIES, TORSOS = ("right", "height"), ("elliptical", "round")
+Settings = tuple[tuple[str, Any], ...]
+
+
+@dataclass(frozen=True)
+class Clip:
+    """A scene to be tracked in; see `clips.scene_of`.
+
+    view : "ring" (cameras around the person) or "side" (one camera across the direction walked)
+    frames, rate : how many, and how many a second
+    reduction : of pictures and masks before anything is measured; None is what the tracker would choose
+    """
+
+    figure: str = "man"
+    motion: str = "walk"
+    view: str = "ring"
+    cameras: int = 3
+    seed: int = 0
+    frames: int = 60
+    rate: float = 30.0
+    preset: str = "studio"
+    reduction: int | None = None
+
+    def __post_init__(self) -> None:
+        _one_of("clip: view", self.view, ("ring", "side"))
+        _at_least_one("clip: cameras", self.cameras)
+        if self.frames < 2:
+            raise InputError("clip: frames", expected="at least 2", got=str(self.frames))
+
+    @property
+    def digest(self) -> str:
+        """The name of its evidence on disk."""
+        return job_digest({"version": VERSION, **asdict(self)})[:16]
+
+
+@dataclass(frozen=True)
+class Faults:
+    """What is made worse on purpose.
+
+    masks : "", "eroded", "dilated" (by one pixel of the reduced mask) or "holes"
+    calibration_px : pixels as recorded, by which every camera's picture is off, each in its own direction
+    body : share by which every length and girth is off, with random signs
+    """
+
+    masks: str = ""
+    calibration_px: float = 0.0
+    body: float = 0.0
+
+    def __post_init__(self) -> None:
+        _one_of("faults: masks", self.masks, MASK_FAULTS)
+
+
+@dataclass(frozen=True)
+class Trial:
+    """One clip tracked once.
+
+    Parameters
+    ----------
+    clip : Clip
+    method : a row of `filters.METHODS`
+    printed : the paper's settings, else those measured to work
+    settings : of the filter, and `moving` : of the motion model, that replace the preset's
+    cues : CueWeights
+    masks : "own" (background subtraction), "true", or "job" (the whole product, from videos to a run folder)
+    body : "right" (joint centres and girths of the figure) or "height" (fitted to the clip from the height alone)
+    torso : "elliptical", or "round": as wide as deep
+    seed : of the tracker
+    keep_track : leave the estimated joints on disk, for curves
+    """
+
+    clip: Clip = field(default_factory=Clip)
+    method: str = "guided"
+    printed: bool = False
+    settings: Settings = ()
+    moving: Settings = ()
+    cues: CueWeights = CueWeights()
+    masks: str = "own"
+    body: str = "right"
+    torso: str = "elliptical"
+    faults: Faults = field(default_factory=Faults)
+    seed: int = 0
+    keep_track: bool = False
+
+    def __post_init__(self) -> None:
+        for what, got, known in (
+            ("masks", self.masks, MASKS),
+            ("body", self.body, BODIES),
+            ("torso", self.torso, TORSOS),
+        ):
+            _one_of(f"trial: {what}", got, known)
+        if self.masks == "job" and (self.faults != Faults() or self.body != "height" or self.torso != "elliptical"):
+            raise InputError("trial through a job", expected="no faults and a body by height", got=str(self.faults))
+
+    @property
+    def filter_config(self) -> CommonConfig:
+        """The filter's settings, all of them."""
+        row = method(self.method)
+        return replace(row.PRINTED if self.printed else row.WORKING, **dict(self.settings))
+
+    @property
+    def motion(self) -> Motion:
+        """How the person may move: the method's own, at full velocity gain where the paper is followed."""
+        base = motion_of(self.method, self.clip.cameras)
+        base = replace(SEARCHING, velocity_gain=1.0) if self.printed else base
+        return replace(base, **dict(self.moving))
+
+    @property
+    def description(self) -> dict[str, Any]:
+        """Everything that decides the result, as JSON values."""
+        resolved = {"filter": asdict(self.filter_config), "motion": asdict(self.motion)}
+        return {"version": VERSION, **_plain(asdict(self)), **_plain(resolved)}
+
+    @property
+    def digest(self) -> str:
+        """The key under which its result is kept."""
+        return job_digest(self.description)[:16]
+
+    def with_settings(self, **settings: Any) -> Trial:
+        """The same with filter settings replaced."""
+        return replace(self, settings=tuple(sorted({**dict(self.settings), **settings}.items())))
+
+    def with_motion(self, **settings: float) -> Trial:
+        """The same with settings of the motion model replaced."""
+        return replace(self, moving=tuple(sorted({**dict(self.moving), **settings}.items())))
+
+
+def _plain(value: Any) -> Any:
+    """Tuples as lists, for JSON."""
+    if isinstance(value, Mapping):
+        return {name: _plain(item) for name, item in value.items()}
+    return [_plain(item) for item in value] if isinstance(value, tuple | list) else value
+
+
+def _one_of(what: str, got: str, known: tuple[str, ...]) -> None:
+    if got not in known:
+        raise InputError(what, expected=" | ".join(map(repr, known)), got=repr(got))
+
+
+def _at_least_one(what: str, got: int) -> None:
+    if got < 1:
+        raise InputError(what, expected="at least 1", got=str(got))
