@@ -30,9 +30,8 @@ def soles(figure: Figure, track: Track) -> np.ndarray:
 
 def fastest(track: Track) -> tuple[float, float]:
     """Largest speed and acceleration of a joint: metres per second, and per second squared."""
-    interval = track.times[1] - track.times[0]
     moved, bent = (np.linalg.norm(np.diff(track.joints, n, axis=0), axis=-1).max() for n in (1, 2))
-    return moved / interval, bent / interval**2
+    return moved / track.interval, bent / track.interval**2
 
 
 def lowest(figure: Figure, track: Track, every: int = 6) -> np.ndarray:

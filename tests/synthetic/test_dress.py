@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from muybridge.synthetic.dress import FOLDS, bones_at, hang
+from muybridge.synthetic.dress import FOLDS, hang
 from muybridge.synthetic.motion import Motion, perform
+from muybridge.synthetic.posture import posture_at
 from muybridge.synthetic.skinning import load_figure
 
 FIGURE = load_figure("man", cut="long_sleeves")
@@ -54,7 +55,7 @@ class TestMesh:
         assert moved[names == "shirt"].max() > 0.02 and moved[names == "trousers"].max() > 0.02
 
     def loose(self, frame: int = FRAME, lag: float = 3.0):
-        return FIGURE.mesh(*at(frame), earlier=bones_at(TRACK.rotations, TRACK.places, frame - lag), looseness=LOOSE)
+        return FIGURE.mesh(*at(frame), earlier=posture_at(TRACK, frame - lag), looseness=LOOSE)
 
     def test_moves_late(self):
         """Against cloth that stands still: shifted towards where the skin was, everywhere, never the other way."""
@@ -78,24 +79,3 @@ class TestMesh:
     def test_normals_are_the_cloths(self):
         mesh = self.loose()
         np.testing.assert_allclose(mesh.normals, FIGURE.normals(mesh.vertices), atol=1e-12)
-
-
-class TestBonesAt:
-    def test_on_a_frame(self):
-        turns, places = bones_at(TRACK.rotations, TRACK.places, 7)
-        np.testing.assert_allclose(turns, TRACK.rotations[7], atol=1e-12)
-        np.testing.assert_allclose(places, TRACK.places[7], atol=1e-12)
-
-    def test_between_frames(self):
-        turns, places = bones_at(TRACK.rotations, TRACK.places, 7.25)
-        identity = np.broadcast_to(np.eye(3), turns.shape)
-        np.testing.assert_allclose(turns @ turns.transpose(0, 2, 1), identity, atol=1e-12)
-        assert (np.linalg.det(turns) > 0).all()
-        np.testing.assert_allclose(places, 0.75 * TRACK.places[7] + 0.25 * TRACK.places[8], atol=1e-12)
-
-    @pytest.mark.parametrize("frame, clipped", [(-2.5, 0), (1e9, -1)])
-    def test_outside_the_clip(self, frame, clipped):
-        assert np.array_equal(bones_at(TRACK.rotations, TRACK.places, frame)[1], TRACK.places[clipped])
-
-    def test_one_frame(self):
-        assert np.array_equal(bones_at(TRACK.rotations[:1], TRACK.places[:1], 0.0)[1], TRACK.places[0])

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from muybridge.synthetic.motion import Motion, perform
-from muybridge.synthetic.posture import posture_at
+from muybridge.synthetic.posture import mesh_at, posture_at
 from muybridge.synthetic.skinning import load_figure
 
 FIGURE = load_figure("man")
@@ -46,3 +46,18 @@ def test_the_motion_goes_on_at_the_ends() -> None:
     np.testing.assert_allclose(before, 1.25 * COARSE.places[0] - 0.25 * COARSE.places[1], atol=1e-12)
     _, after = posture_at(COARSE, 29.25)
     np.testing.assert_allclose(after, 1.25 * COARSE.places[29] - 0.25 * COARSE.places[28], atol=1e-12)
+
+
+def test_a_track_of_one_frame_stands_still() -> None:
+    one = type(FINE)(FINE.times[:1], FINE.rotations[:1], FINE.places[:1], FINE.joints[:1])
+    for frame in (-0.5, 0.0, 3.0):
+        rotations, places = posture_at(one, frame)
+        assert np.array_equal(rotations, one.rotations[0]) and np.array_equal(places, one.places[0])
+
+
+def test_cloth_lags_behind_a_frame_of_the_clip_and_none_before_it() -> None:
+    """At the first frame cloth hangs as that of somebody who stands; later it does not."""
+    for frame, still in ((0, True), (10, False)):
+        mesh = mesh_at(FIGURE, COARSE, frame, 0.03)
+        hanging = FIGURE.mesh(*posture_at(COARSE, frame), looseness=0.03)
+        assert np.array_equal(mesh.vertices, hanging.vertices) == still

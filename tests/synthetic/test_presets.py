@@ -17,12 +17,11 @@ from muybridge.synthetic.outfits import OUTFITS
 from muybridge.synthetic.placing import apart, clear_of
 from muybridge.synthetic.presets import BLUESCREEN_OUTFITS, PRESETS, preset_scene
 from muybridge.synthetic.scene import render
-from muybridge.synthetic.skinning import load_figure
 
 
 def joints_of(scene: Scene, index: int = 0) -> np.ndarray:
     person = scene.people[index]
-    return perform(load_figure(person.figure), person.motion).joints
+    return perform(person.load(), person.motion).joints
 
 
 @pytest.mark.parametrize("preset", PRESETS)
@@ -68,7 +67,7 @@ def test_humaneva_stays_on_its_floor() -> None:
 def test_a_blue_screen_is_blue_and_nobody_in_front_is() -> None:
     scene = preset_scene("studio", seed=1, room="bluescreen")
     wall = np.array(scene.room.wall)
-    assert wall[0] > 2 * wall[1] and scene.person.outfit in [OUTFITS[name] for name in BLUESCREEN_OUTFITS]
+    assert wall[0] > 2 * wall[1] and any(set(OUTFITS[name]) <= set(scene.person.outfit) for name in BLUESCREEN_OUTFITS)
     for garment in scene.person.outfit:
         assert garment.colour[0] < 1.5 * garment.colour[2] + 30
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import msgspec
@@ -14,7 +15,7 @@ from muybridge.errors import InputError
 from muybridge.io._tables import Table
 from muybridge.synthetic import scene_tables
 from muybridge.synthetic.presets import PRESETS, preset_scene
-from muybridge.synthetic.scene import demo_scene
+from muybridge.synthetic.scene import demo_scene, render
 from muybridge.synthetic.scene_file import read
 from muybridge.synthetic.scene_text import scene_text
 
@@ -40,7 +41,12 @@ def test_what_is_written_comes_back(tmp_path: Path, preset: str) -> None:
 
 
 def test_the_demo_comes_back(tmp_path: Path) -> None:
-    assert read(written(tmp_path, scene_text(demo_scene(2)))) == demo_scene(2)
+    """What it leaves to the figure is written out: the same clothes and hair, by name."""
+    demo = demo_scene(2)
+    found = read(written(tmp_path, scene_text(demo)))
+    assert found == replace(demo, person=demo.person.complete())
+    for mine, theirs in zip(render(found, 40)[0], render(demo, 40)[0], strict=True):
+        assert np.array_equal(mine, theirs)
 
 
 def test_what_is_written_names_every_key(tmp_path: Path) -> None:
@@ -57,6 +63,7 @@ def test_what_is_said_wins(tmp_path: Path) -> None:
         written(
             tmp_path,
             'preset = "hard"\nother = []\nduration = 1.0\nrate = 25\n[person]\nfigure = "man"\noutfit = "green"\n'
+            'cut = "shorts"\nhair = "bun"\n'
             'looseness = 0.01\n[[person.garment]]\nlabel = "shirt"\npattern = "checks"\n[motion]\nkind = "wave"\n'
             "heading = 0.5\n[room]\nclutter = 2\n[light]\nshadow = 0.2\nswitch = []\n[sensor]\nnoise = 1.0\n"
             "shutter = 0.0\n"
@@ -65,6 +72,7 @@ def test_what_is_said_wins(tmp_path: Path) -> None:
     )
     assert scene.others == () and scene.frame_count == 25 and scene.light.switches == () and len(scene.rig) == 1
     assert (scene.person.figure, scene.person.looseness, scene.person.motion.heading) == ("man", 0.01, 0.5)
+    assert (scene.person.cut, scene.person.hair) == ("shorts", "bun")
     shirt = next(garment for garment in scene.person.outfit if garment.label == "shirt")
     assert shirt.pattern == "checks" and shirt.colour == (70, 116, 62)
     assert (scene.room.clutter, scene.shadow, scene.noise, scene.sensor.shutter) == (2, 0.2, 1.0, 0.0)
@@ -128,6 +136,9 @@ def test_a_recorded_motion(tmp_path: Path) -> None:
         (CAMERA + "[room]\nhalf_width = 3.6\n[motion]\nheading = 1.57\nplace = [0, 2.3]", "a way inside the room"),
         ('[[person.garment]]\nlabel = "hat"', "garment: label: expected one of"),
         ('[[person.garment]]\nlabel = "shirt"\npattern = "tartan"', "pattern: expected one of"),
+        ('[person]\ncut = "toga"', "figure: cut: expected one of short_sleeves"),
+        ('[person]\nhair = "mohawk"', "figure: hair: expected one of short"),
+        ('[[other]]\ncut = "toga"', "figure: cut: expected one of short_sleeves"),
         ("[person]\nlooseness = 3", "looseness: expected 0 to 0.15 m"),
         ("[person]\nmotion = {kind = 'walk'}", "in .motion., got .person.motion."),
         ("[sensor]\nquality = 99", "quality: expected 0 .best. to 51"),

@@ -14,9 +14,9 @@ from muybridge.synthetic.occluders import Occluder
 from muybridge.synthetic.rasterise import Mesh, draw
 from muybridge.synthetic.rigs import looking_at
 from muybridge.synthetic.scene import shoot
-from muybridge.synthetic.skinning import load_figure
+from muybridge.synthetic.skinning import SEGMENTS, load_figure
 from muybridge.synthetic.stage import stage
-from muybridge.synthetic.visibility import SEGMENTS, segment_of_bone, visible_shares
+from muybridge.synthetic.visibility import segment_of_bone, visible_shares
 
 NAMES = tuple(SEGMENTS)
 FRONT = looking_at("front", np.array([3.5, 0.0, 1.0]), np.array([0.0, 0.0, 0.9]), focal=260, size=(240, 240))

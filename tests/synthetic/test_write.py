@@ -20,7 +20,7 @@ from muybridge.io.video import open_masks, open_pictures
 from muybridge.synthetic.motion import Motion
 from muybridge.synthetic.scene import demo_scene, render, shoot, truth
 from muybridge.synthetic.scene_file import read
-from muybridge.synthetic.visibility import SEGMENTS
+from muybridge.synthetic.skinning import SEGMENTS
 from muybridge.synthetic.write import measures, stature, write_scene
 
 
@@ -79,7 +79,7 @@ def test_true_visibility(written):
 
 def test_the_scene_itself(written):
     scene, folder, _ = written
-    assert read(folder / "scene.toml") == scene
+    assert read(folder / "scene.toml") == replace(scene, person=scene.person.complete())
 
 
 def test_an_earlier_scene_is_replaced_whole(written, tmp_path):

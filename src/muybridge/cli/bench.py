@@ -4,8 +4,12 @@ from __future__ import annotations
 
 from dataclasses import asdict
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from muybridge.cli.reporting import DEFAULT_REPORTING, Reporting
+
+if TYPE_CHECKING:
+    from muybridge.experiments.speed import Measurement
 
 
 def bench(*names: str, out: Path | None = None, seed: int = 1, reporting: Reporting = DEFAULT_REPORTING) -> None:
@@ -14,7 +18,7 @@ def bench(*names: str, out: Path | None = None, seed: int = 1, reporting: Report
     Parameters
     ----------
     names
-        What to measure: likelihood, demc, observation, filters; all where none is named.
+        What to measure: likelihood, demc, observation, filters, render; all where none is named.
     out
         Also write bench.json into this folder.
     seed
@@ -38,10 +42,16 @@ def bench(*names: str, out: Path | None = None, seed: int = 1, reporting: Report
     for name in names or BENCHMARKS:
         for row in BENCHMARKS[name](np.random.default_rng(seed)):
             measured.append(asdict(row))
-            wanted = "" if row.floor is None else f"   (at least {row.floor:g}, aim {row.aim:g})"
+            wanted = _wanted(row)
             reporting.say(f"{row.what:<56}{row.value:10.2f} {row.unit}{wanted}")
     record = plain({"machine": machine, "seed": seed, "measurements": measured})
     if out is not None:
         out.mkdir(parents=True, exist_ok=True)
         (out / "bench.json").write_text(json.dumps(record, indent=1) + "\n", encoding="utf-8")
     reporting.finish(record)
+
+
+def _wanted(row: Measurement) -> str:
+    """What was to be reached, where something was."""
+    named = [f"{word} {value:g}" for word, value in (("at least", row.floor), ("aim", row.aim)) if value is not None]
+    return f"   ({', '.join(named)})" if named else ""

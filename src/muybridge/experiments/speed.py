@@ -20,6 +20,7 @@ from muybridge.filters import METHODS, GaussianWalk
 from muybridge.likelihood.benchmark import bench_scene, time_likelihood
 from muybridge.likelihood.cues import CueWeights
 from muybridge.likelihood.observation import ImageLikelihood, Observation
+from muybridge.synthetic.benchmark import time_rendering
 from muybridge.synthetic.scene import demo_scene, render, truth
 from muybridge.tracking.tracker import Tracker, TrackerConfig
 
@@ -113,11 +114,22 @@ def filters(rng: np.random.Generator) -> Iterator[Measurement]:
         yield Measurement(f"{name}, silhouette of one camera", 1 / seconds, "frames/s")
 
 
+RENDERED = 20.0
+"""Frames of one camera in a second, at least."""
+
+
+def rendering(rng: np.random.Generator) -> Iterator[Measurement]:
+    """A person as tall as the picture of 640 x 480, CPU time of one thread; see `muybridge.synthetic.benchmark`."""
+    for timing in time_rendering():
+        yield Measurement(f"{timing.name}, 640 x 480", timing.frames_per_second, "frames/s", RENDERED)
+
+
 BENCHMARKS: dict[str, Callable[[np.random.Generator], Iterator[Measurement]]] = {
     "likelihood": likelihood,
     "demc": printed_demc,
     "observation": observation,
     "filters": filters,
+    "render": rendering,
 }
 
 

@@ -14,14 +14,14 @@ from functools import partial
 import numpy as np
 
 from muybridge.cameras.model import Camera
-from muybridge.synthetic.dress import bones_at
 from muybridge.synthetic.motion import Motion, perform
+from muybridge.synthetic.posture import mesh_at, posture_at
 from muybridge.synthetic.rasterise import Cloth, draw
 from muybridge.synthetic.rigs import looking_at
 from muybridge.synthetic.skinning import Figure, load_figure
 from muybridge.synthetic.textures import clothing
 
-FRAME, LAG = 12, 3.0  # of a walk at 30 frames a second
+FRAME = 12  # of a walk at 30 frames a second
 LOOSENESS = 0.03  # metres
 
 
@@ -37,15 +37,14 @@ def time_rendering(name: str = "man", repeats: int = 9) -> list[RenderTiming]:
     """Drawing alone; skinning, normals and drawing; the same with loose clothes."""
     figure = load_figure(name)
     track = perform(figure, Motion("walk", 1.0))
-    now = track.rotations[FRAME], track.places[FRAME]
-    before = bones_at(track.rotations, track.places, FRAME - LAG)
+    now = posture_at(track, FRAME)
     mesh = figure.mesh(*now)
     camera, cloth = _filled(mesh.vertices), _cloth(figure)
     work: dict[str, Callable[[], object]] = {
         "draw a person": partial(draw, camera, mesh, cloth),
         "skin and draw a person": lambda: draw(camera, figure.mesh(*now), cloth),
         "skin and draw a person in loose clothes": lambda: draw(
-            camera, figure.mesh(*now, earlier=before, looseness=LOOSENESS), cloth
+            camera, mesh_at(figure, track, FRAME, LOOSENESS), cloth
         ),
     }
     return [RenderTiming(what, 1.0 / _best(call, repeats)) for what, call in work.items()]

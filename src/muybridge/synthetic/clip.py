@@ -69,3 +69,8 @@ class Track:
     rotations: np.ndarray
     places: np.ndarray
     joints: np.ndarray
+
+    @property
+    def interval(self) -> float:
+        """Seconds between two frames; 1 where there is only one."""
+        return float(self.times[1] - self.times[0]) if len(self.times) > 1 else 1.0

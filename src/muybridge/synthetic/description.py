@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,9 +12,10 @@ from muybridge.errors import InputError
 from muybridge.synthetic.light import Light
 from muybridge.synthetic.motion import Motion
 from muybridge.synthetic.occluders import Occluder
-from muybridge.synthetic.outfits import OUTFITS, Outfit
+from muybridge.synthetic.outfits import OUTFITS, Outfit, completed
 from muybridge.synthetic.room import Room
 from muybridge.synthetic.sensor import Sensor
+from muybridge.synthetic.skinning import Figure, load_figure
 
 if TYPE_CHECKING:
     from muybridge.synthetic.recorded import Recorded
@@ -30,16 +31,29 @@ class Person:
     motion : what is done, a `Motion` or a recorded one
     outfit : garments; together with BARE they cover every label of the figure
     looseness : metres, how far the clothes stand off the body
+    cut : of the clothes, one of `figure_file.cut_names()`; None: the figure's own
+    hair : one of `figure_file.HAIR`; None: the figure's own
     """
 
     figure: str = "man"
     motion: Motion | Recorded = field(default_factory=Motion)
     outfit: Outfit = OUTFITS["striped"]
     looseness: float = 0.0
+    cut: str | None = None
+    hair: str | None = None
 
     def __post_init__(self) -> None:
         if not 0 <= self.looseness <= 0.15:
             raise InputError("person: looseness", expected="0 to 0.15 m", got=str(self.looseness))
+
+    def load(self) -> Figure:
+        """The figure, dressed."""
+        return load_figure(self.figure, self.cut, self.hair)
+
+    def complete(self) -> Person:
+        """The same with nothing left to the figure: its cut and hair by name, a garment for every label."""
+        figure = self.load()
+        return replace(self, cut=figure.cut, hair=figure.hair, outfit=completed(self.outfit))
 
 
 @dataclass(frozen=True)

@@ -47,23 +47,3 @@ def folds(material: np.ndarray) -> np.ndarray:
         direction = np.array([np.cos(turn), np.sin(turn), 0.35 * (-1) ** number])
         total += np.sin(2 * np.pi * (material @ direction) / length + number)
     return total / len(FOLD_LENGTHS)
-
-
-def bones_at(rotations: np.ndarray, places: np.ndarray, frame: float) -> tuple[np.ndarray, np.ndarray]:
-    """Bone frames between two frames of a track, for the moment from which loose cloth lags.
-
-    Parameters
-    ----------
-    rotations : (T, B, 3, 3); places : (T, B, 3) metres
-    frame : may have a fraction; before the first or after the last frame the figure stands still
-
-    Returns
-    -------
-    (B, 3, 3) and (B, 3)
-    """
-    frame = float(np.clip(frame, 0, len(places) - 1))
-    first = min(int(frame), max(len(places) - 2, 0))
-    second, share = min(first + 1, len(places) - 1), frame - first
-    mixed = (1 - share) * rotations[first] + share * rotations[second]
-    left, _, right = np.linalg.svd(mixed)  # the nearest rotation; frames are far less than a half turn apart
-    return left @ right, (1 - share) * places[first] + share * places[second]

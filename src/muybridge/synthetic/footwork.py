@@ -104,7 +104,7 @@ def sidestep(rng: np.random.Generator, motion: Motion, leg: float) -> tuple[Angl
         bears=(0.62, 0.62),
         speed=0.42 * motion.vigour * rng.uniform(0.9, 1.1) * leg / LEG,
         direction=0.5 * np.pi if left else -0.5 * np.pi,
-        apart=0.16 * leg / LEG,
+        apart=0.19 * leg / LEG,
         ahead=-0.03,
         lift=0.05,
         pitch=((0.0, 0.0), (0.5, 0.0), (0.66, 16.0), (0.9, 4.0)),

@@ -26,7 +26,6 @@ BARRIERS: tuple[tuple[str, Size, Size], ...] = (
     ("box", (0.45, 0.35, 0.7), (0.9, 0.5, 1.15)),
     ("table", (1.0, 0.6, 0.72), (1.5, 0.8, 0.9)),
 )
-LOOSENESS = 0.03  # metres
 WOODS: tuple[Colour, ...] = ((88, 112, 138), (62, 84, 108), (120, 134, 142), (84, 92, 78), (66, 66, 96))
 
 
@@ -43,11 +42,11 @@ def furnished(rng: np.random.Generator, scene: Scene, count: int = 6) -> Scene:
 
 
 def hardened(rng: np.random.Generator, scene: Scene, figures: Sequence[str], outfits: Sequence[str]) -> Scene:
-    """The scene with something in one camera's way, somebody who passes, a lamp that switches and loose clothes."""
-    joints = perform(load_figure(scene.person.figure), scene.person.motion).joints
+    """The scene with something in one camera's way, somebody who passes, and a lamp that switches."""
+    joints = perform(scene.person.load(), scene.person.motion).joints
     scene = replace(scene, occluders=(*scene.occluders, _in_the_way(rng, scene, joints)))
     scene = replace(scene, others=(_passer_by(rng, scene, joints, figures, outfits),))
-    return replace(scene, light=_switched(rng, scene), person=replace(scene.person, looseness=LOOSENESS))
+    return replace(scene, light=_switched(rng, scene))
 
 
 def _furniture(rng: np.random.Generator, half_width: float) -> Occluder:

@@ -68,6 +68,11 @@ OUTFITS: dict[str, Outfit] = {
 DEMO_OUTFITS: tuple[Outfit, ...] = tuple(OUTFITS.values())[:4]
 
 
+def completed(worn: Outfit) -> Outfit:
+    """The garments with BARE's for the labels that they leave open, one a label."""
+    return tuple({garment.label: garment for garment in (*BARE, *worn)}.values())
+
+
 def outfit(name: str) -> Outfit:
     """The outfit of that name."""
     if name not in OUTFITS:

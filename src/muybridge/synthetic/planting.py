@@ -39,19 +39,21 @@ def sole(figure: Figure, worlds: np.ndarray, places: np.ndarray, side: str) -> n
 
 
 def foot_points(figure: Figure, side: str) -> np.ndarray:
-    """(3, 3) metres: heel and ball from the ankle, tip from the head of the toes, in the neutral posture."""
+    """(3, 3) metres: heel and ball from the ankle, tip from the head of the toes, in the neutral posture.
+
+    The ball lies under the head of the toes. No vertex stands for it: the nearest is on either edge of the sole, 6 cm
+    to the side, as the mesh has it, and footprints are where balls are.
+    """
     shoes = np.flatnonzero(figure.labels == figure.label_names.index("shoes"))
     left = figure.vertices[shoes, 1] > 0
     own = figure.vertices[shoes[left if side == "left" else ~left]]
     foot, toes = figure.bone(f"{side}_foot"), figure.bone(f"{side}_toes")
     low = own[own[:, 2] < 0.025]
-    ball = figure.heads[toes][0]
-    heel, tip = low[np.argmin(low[:, 0])], low[np.argmax(low[:, 0])]
-    middle = low[np.argmin(np.abs(low[:, 0] - ball) + low[:, 2])]
+    heel, tip, ball = low[np.argmin(low[:, 0])], low[np.argmax(low[:, 0])], figure.heads[toes]
     return np.stack(
         [
             figure.to_neutral[bone] @ (point * (1, 1, 0) - figure.heads[bone])
-            for point, bone in ((heel, foot), (middle, foot), (tip, toes))
+            for point, bone in ((heel, foot), (ball, foot), (tip, toes))
         ]
     )
 

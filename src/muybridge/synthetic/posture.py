@@ -32,10 +32,5 @@ def posture_at(track: Track, frame: float) -> tuple[np.ndarray, np.ndarray]:
 
 def mesh_at(figure: Figure, track: Track, frame: float, looseness: float) -> Mesh:
     """The figure at that moment, ready to be drawn; `looseness` in metres is how far its clothes stand off."""
-    earlier = posture_at(track, max(frame - LAG / interval_of(track), 0.0)) if looseness else None
+    earlier = posture_at(track, max(frame - LAG / track.interval, 0.0)) if looseness else None
     return figure.mesh(*posture_at(track, frame), earlier=earlier, looseness=looseness)
-
-
-def interval_of(track: Track) -> float:
-    """Seconds between two frames."""
-    return float(track.times[1] - track.times[0]) if len(track.times) > 1 else 1.0

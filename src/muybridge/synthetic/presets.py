@@ -7,14 +7,14 @@
 | `humaneva` | 3 x 2 m of floor, 60 Hz | as the studio; the person turns more, the cameras stand further off |
 | `hard` | full of things | one in the way, somebody passes, a lamp, blur, exposure, compression, loose clothes |
 
-The seed decides who it is, what is worn, how and where they move, where the cameras stand, and the noise.
+The seed decides who it is, what is worn and how it is cut, the hair, how and where they move, where the cameras stand,
+and the noise.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from importlib import resources
 from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
 import numpy as np
@@ -29,7 +29,8 @@ from muybridge.synthetic.placing import in_room, side_camera, whole
 from muybridge.synthetic.rigs import ring
 from muybridge.synthetic.room import Room
 from muybridge.synthetic.sensor import Sensor
-from muybridge.synthetic.skinning import Figure, load_figure
+from muybridge.synthetic.skinning import Figure, figure_names, load_figure
+from muybridge.synthetic.wardrobe import dressed
 
 if TYPE_CHECKING:
     from muybridge.synthetic.recorded import Recorded
@@ -64,10 +65,11 @@ class Preset:
     rooms : names in ROOMS, the first is the default
     outfits : names in `outfits.OUTFITS`
     noise, drift, shadow, sensor : as in `Scene`
+    looseness : metres, from and to
     radius : metres from the middle of the floor to the cameras of a ring
     floor : (x, y) metres: the person's pelvis stays inside a rectangle of this size
     bend : factor on how fast a walk turns
-    crowded : something in the way, somebody who passes, a lamp that switches, loose clothes
+    crowded : something in the way, somebody who passes, a lamp that switches
     """
 
     rate: float = 30.0
@@ -77,6 +79,7 @@ class Preset:
     noise: float = 3.0
     drift: float = 0.015
     shadow: float = 0.45
+    looseness: tuple[float, float] = (0.0, 0.0)
     sensor: Sensor = Sensor()
     radius: float = RADIUS
     floor: tuple[float, float] = (np.inf, np.inf)
@@ -86,13 +89,14 @@ class Preset:
 
 PRESETS: dict[str, Preset] = {
     "easy": Preset(rooms=("plain",), outfits=("striped", "green", "red"), noise=1.0, drift=0.0, shadow=0.0),
-    "studio": Preset(rooms=("indoor", "bluescreen")),
+    "studio": Preset(rooms=("indoor", "bluescreen"), looseness=(0.0, 0.01)),
     "humaneva": Preset(rate=60.0, rooms=("hall",), noise=2.5, shadow=0.35, radius=4.3, floor=(3.0, 2.0), bend=2.0),
     "hard": Preset(
         rooms=("office",),
         noise=5.0,
         drift=0.04,
         shadow=0.55,
+        looseness=(0.02, 0.03),
         sensor=Sensor(shutter=0.5, exposure=0.03, automatic=0.5, lag=0.35, readout=0.6, quality=32),
         crowded=True,
     ),
@@ -112,6 +116,8 @@ def preset_scene(
     view: View = "ring",
     room: str | None = None,
     outfit_name: str | None = None,
+    cut: str | None = None,
+    hair: str | None = None,
     duration: float | None = None,
     rate: float | None = None,
     rig: Rig | None = None,
@@ -122,7 +128,7 @@ def preset_scene(
     ----------
     preset : a key of PRESETS
     seed : decides all that is not given
-    figure, outfit_name, room : who, what is worn, where (names)
+    figure, outfit_name, cut, hair, room : who, what is worn and how, where (names)
     motion : what is done: a kind, or a whole motion, which then stays where it says
     details : fields of `Motion` that are not the seed's to decide, with a kind
     cameras : 1 to 8 in a ring, 3 where absent; the side view has one
@@ -142,21 +148,16 @@ def preset_scene(
         kind, motion, view, cameras or 3, duration or kind.duration, rate or kind.rate, seed, rig, details or {}
     )
     done, rig, half_width = _placed(rng, load_figure(who), draft, surroundings.half_width)
+    person = dressed([seed, 0], Person(who, done, clothes, cut=cut, hair=hair), kind.looseness)
     scene = Scene(
-        rig, Person(who, done, clothes), replace(surroundings, half_width=half_width), noise=kind.noise,
+        rig, person, replace(surroundings, half_width=half_width), noise=kind.noise,
         drift=kind.drift, shadow=kind.shadow, seed=seed, sensor=kind.sensor,
     )  # fmt: skip
-    return hardened(rng, furnished(rng, scene), figure_names(), kind.outfits) if kind.crowded else scene
-
-
-def figure_names() -> tuple[str, ...]:
-    """The people there are."""
-    folder = resources.files("muybridge.synthetic") / "bodies"
-    return tuple(
-        sorted(
-            entry.name[:-4] for entry in folder.iterdir() if entry.name.endswith(".npz") and entry.name != "common.npz"
-        )
-    )
+    if not kind.crowded:
+        return scene
+    scene = hardened(rng, furnished(rng, scene), figure_names(), kind.outfits)
+    others = (dressed([seed, number], other, kind.looseness) for number, other in enumerate(scene.others, 1))
+    return replace(scene, others=tuple(others))
 
 
 @dataclass(frozen=True)

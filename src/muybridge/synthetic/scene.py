@@ -41,7 +41,7 @@ class Shot:
     ----------
     image : (H, W, 3) uint8 BGR
     mask : (H, W) bool: the person to be tracked is seen in at least half of the pixel
-    visible : (S,) float64 in 0-1, the visible share of each of `visibility.SEGMENTS`; none where it was not asked for
+    visible : (S,) float64 in 0-1, the visible share of each of `skinning.SEGMENTS`; none where it was not asked for
     """
 
     image: np.ndarray

@@ -21,7 +21,7 @@ from muybridge.synthetic.description import Person, Scene
 from muybridge.synthetic.light import Lamp, Light, Switch
 from muybridge.synthetic.motion import Motion, perform
 from muybridge.synthetic.occluders import Occluder
-from muybridge.synthetic.outfits import Garment, Outfit, outfit
+from muybridge.synthetic.outfits import Garment, Outfit, completed, outfit
 from muybridge.synthetic.placing import check_seen
 from muybridge.synthetic.presets import PRESETS, preset_scene
 from muybridge.synthetic.rigs import looking_at
@@ -36,7 +36,6 @@ from muybridge.synthetic.scene_tables import (
     SceneTable,
     given,
 )
-from muybridge.synthetic.skinning import load_figure
 
 if TYPE_CHECKING:
     from muybridge.synthetic.recorded import Recorded
@@ -92,7 +91,7 @@ def scene_of(table: SceneTable) -> Scene:
         scene = replace(scene, occluders=tuple(_occluder(row) for row in table.occluder))
     if table.other is not None:
         scene = replace(scene, others=tuple(_other(row, scene) for row in table.other))
-    joints = perform(load_figure(scene.person.figure), scene.person.motion).joints
+    joints = perform(scene.person.load(), scene.person.motion).joints
     check_seen(scene.rig, joints)
     _check_inside(scene, joints)
     return scene
@@ -116,6 +115,8 @@ def _base(table: SceneTable) -> Scene:
         view=table.view or "ring",
         room=table.room.kind,
         outfit_name=table.person.outfit,
+        cut=table.person.cut,
+        hair=table.person.hair,
         duration=table.duration,
         rate=table.rate,
         rig=rig,
@@ -154,13 +155,14 @@ def _recorded(row: MotionTable, rate: float, duration: float | None) -> Recorded
 
 def _person(row: PersonTable, base: Person, motion: Motion | Recorded) -> Person:
     """The base person, with what the table says instead."""
-    clothes = _clothes(row.garment, base.outfit)
-    known = load_figure(base.figure).label_names
+    loose = base.looseness if row.looseness is None else row.looseness
+    worn, cut, hair = _clothes(row.garment, base.outfit), row.cut or base.cut, row.hair or base.hair
+    made = Person(base.figure, motion, worn, loose, cut, hair)
+    known = made.load().label_names
     for garment in row.garment:
         if garment.label not in known:
             raise InputError("garment: label", expected=f"one of {', '.join(known)}", got=repr(garment.label))
-    loose = base.looseness if row.looseness is None else row.looseness
-    return Person(base.figure, motion, clothes, loose)
+    return made
 
 
 def _other(row: PersonTable, scene: Scene) -> Person:
@@ -178,7 +180,7 @@ def _other(row: PersonTable, scene: Scene) -> Person:
 
 def _clothes(rows: Sequence[GarmentTable], base: Outfit) -> Outfit:
     """The base outfit with these garments in place of those on the same labels."""
-    worn = {garment.label: garment for garment in base}
+    worn = {garment.label: garment for garment in completed(base)}
     for row in rows:
         worn[row.label] = replace(worn.get(row.label, Garment(row.label, "plain", (128, 128, 128))),
                                   **given(row, without=("label",)))  # fmt: skip

@@ -66,6 +66,8 @@ class PersonTable(Table, frozen=True):
     """`[person]` and `[[other]]`: who, and what is worn; somebody else has a motion of their own."""
 
     figure: str | None = None
+    cut: str | None = None
+    hair: str | None = None
     outfit: str | None = None
     looseness: Annotated[float, Meta(ge=0)] | None = None
     garment: tuple[GarmentTable, ...] = ()

@@ -42,8 +42,10 @@ def scene_table(scene: Scene) -> dict[str, Any]:
 
 
 def _person(person: Person) -> dict[str, Any]:
-    garments = [asdict(garment) for garment in person.outfit]
-    return {"figure": person.figure, "looseness": person.looseness, "garment": garments}
+    """All that is worn, the figure's own too, so that nobody draws anything for it."""
+    whole = person.complete()
+    names = ("figure", "cut", "hair", "looseness")
+    return {**{name: getattr(whole, name) for name in names}, "garment": [asdict(item) for item in whole.outfit]}
 
 
 def _motion(person: Person) -> dict[str, Any]:

@@ -179,7 +179,7 @@ class Figure:
         Parameters
         ----------
         world : (B, 3, 3); places : (B, 3) metres, world
-        earlier : the same a moment ago (`dress.bones_at`), which loose cloth is still drawn to; None: it stands still
+        earlier : the same a moment ago (`posture.mesh_at`), which loose cloth is still drawn to; None: it stands still
         looseness : metres that cloth hangs off the skin where it is loosest; 0 is tight
         """
         vertices = self.skin(world, places)

@@ -13,12 +13,12 @@ from muybridge.synthetic.description import Person, Scene
 from muybridge.synthetic.light import Lamp
 from muybridge.synthetic.motion import Track, perform
 from muybridge.synthetic.occluders import cloth_of, mesh_of
-from muybridge.synthetic.outfits import BARE
+from muybridge.synthetic.outfits import completed
 from muybridge.synthetic.posture import mesh_at
 from muybridge.synthetic.rasterise import Cloth, Layer, Mesh, draw
 from muybridge.synthetic.room import picture, relit
 from muybridge.synthetic.shadow import FloorShade, floor_shade
-from muybridge.synthetic.skinning import Figure, load_figure
+from muybridge.synthetic.skinning import Figure
 from muybridge.synthetic.textures import clothing
 
 
@@ -96,9 +96,9 @@ def stage(scene: Scene) -> Stage:
 
 
 def _actor(scene: Scene, index: int, person: Person) -> Actor:
-    figure = load_figure(person.figure)
+    figure = person.load()
     rng = np.random.default_rng([scene.seed, 1, index] if index else [scene.seed, 1])
-    garments = {item.label: (item.pattern, item.colour, item.second, item.tile) for item in (*BARE, *person.outfit)}
+    garments = {item.label: (item.pattern, item.colour, item.second, item.tile) for item in completed(person.outfit)}
     cloth = clothing(rng, garments, figure.label_names)
     return Actor(figure, cloth, perform(figure, person.motion), person.looseness)
 

@@ -18,7 +18,7 @@ from muybridge.evaluation.names import JOINTS
 from muybridge.io.disk import disk_errors
 from muybridge.io.run_folder import JointSeries, write_joints
 from muybridge.synthetic.motion import Track
-from muybridge.synthetic.visibility import SEGMENTS
+from muybridge.synthetic.skinning import SEGMENTS
 
 JOINTS_FILE, ANGLES_FILE, VISIBILITY_FILE = "truth_joints.csv", "truth_angles.csv", "truth_visibility.csv"
 VISIBILITY_HEADER = ("frame", "camera", "segment", "visible")

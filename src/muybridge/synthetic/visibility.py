@@ -11,24 +11,7 @@ import numpy as np
 from muybridge._kernels.layers import mark_parts
 from muybridge.cameras.model import Camera
 from muybridge.synthetic.rasterise import Layer, Mesh
-
-#: segment -> the bones that move it
-SEGMENTS: dict[str, tuple[str, ...]] = {
-    "head": ("neck", "head"),
-    "torso": ("abdomen", "thorax", "left_clavicle", "right_clavicle"),
-    "pelvis": ("pelvis",),
-} | {
-    f"{side}_{segment}": tuple(f"{side}_{bone}" for bone in bones)
-    for side in ("left", "right")
-    for segment, bones in (
-        ("upper_arm", ("upper_arm",)),
-        ("forearm", ("forearm",)),
-        ("hand", ("hand",)),
-        ("thigh", ("thigh",)),
-        ("shank", ("shank",)),
-        ("foot", ("foot", "toes")),
-    )
-}
+from muybridge.synthetic.skinning import SEGMENTS
 
 
 def segment_of_bone(bone_names: tuple[str, ...]) -> np.ndarray:
