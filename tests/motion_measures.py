@@ -24,7 +24,7 @@ def facing(track: Track) -> np.ndarray:
 
 
 def soles(figure: Figure, track: Track) -> np.ndarray:
-    """(T, 2, 3, 3) metres: heel, ball and tip of the left and right foot."""
+    """(T, 2, 5, 3) metres: heel, ball, tip and edges of the left and right sole, as `foot_points`."""
     return np.stack([sole(figure, track.rotations, track.places, side) for side in SIDES], axis=1)
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from muybridge.synthetic.clip import Motion
 from muybridge.synthetic.description import Person
 from muybridge.synthetic.figure_file import HAIR, cut_names
 from muybridge.synthetic.presets import PRESETS, preset_scene
@@ -45,6 +46,11 @@ class TestEverybody:
         """Each end is missed by a fifth of the range with a chance of 0.8^40: 1e-4."""
         found = [person.looseness for person in looks(name)]
         assert 0.01 <= min(found) < 0.012 and 0.018 < max(found) <= 0.02
+
+
+def test_nobody_jogs_in_a_skirt_by_chance() -> None:
+    cuts = {dressed([seed], Person("woman", Motion("jog")), (0.0, 0.0)).cut for seed in SEEDS}
+    assert cuts == set(cut_names()) - {"skirt"}
 
 
 def test_what_is_named_stays() -> None:

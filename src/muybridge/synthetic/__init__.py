@@ -11,7 +11,7 @@
 
 `skinning`        `load_figure(name, cut, hair)`, `figure_names()`: the baked people; bones, skinning, the 15 joints
 `figure_file`     reading them: cuts of clothes, hair, shoes
-`outfits`         what is worn; `dress`: loose clothes that move late
+`outfits`         what is worn; `dress`: loose clothes that move late; `wardrobe`: looks by chance
 
 `motion`          `Motion`, `Recorded`, `perform(figure, motion)`: what a figure does, made or recorded
 `clip`            `Motion`: what may be done and how; `Track`: what then was; `posture`: between two frames

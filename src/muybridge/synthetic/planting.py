@@ -9,6 +9,8 @@ from muybridge.synthetic.skinning import Figure
 
 #: Seconds (standard deviation) over which the body's speed is evened out; the price is a foot that slips a little.
 SURGE = 0.06
+#: Metres along the foot within which vertices lie beside its ball.
+BESIDE = 0.02
 
 
 def planted(figure: Figure, worlds: np.ndarray, places: np.ndarray, bearing: np.ndarray, motion: Motion) -> np.ndarray:
@@ -30,30 +32,33 @@ def planted(figure: Figure, worlds: np.ndarray, places: np.ndarray, bearing: np.
 
 
 def sole(figure: Figure, worlds: np.ndarray, places: np.ndarray, side: str) -> np.ndarray:
-    """(T, points, 3): heel, ball and tip of a shoe's sole; they stand for the mesh's lowest vertices."""
+    """(T, points, 3): the points of a shoe's sole in the order of `foot_points`; they stand for its lowest vertices."""
     foot, toes = figure.bone(f"{side}_foot"), figure.bone(f"{side}_toes")
     points = []
-    for reach, bone in zip(foot_points(figure, side), (foot, foot, toes), strict=True):
+    for reach, bone in zip(foot_points(figure, side), (foot, foot, toes, foot, foot), strict=True):
         points.append(places[:, bone] + worlds[:, bone] @ reach)
     return np.stack(points, axis=1)
 
 
 def foot_points(figure: Figure, side: str) -> np.ndarray:
-    """(3, 3) metres: heel and ball from the ankle, tip from the head of the toes, in the neutral posture.
+    """(5, 3) metres: heel, ball, tip, and the sole's right and left edge beside the ball, in the neutral posture.
 
-    The ball lies under the head of the toes. No vertex stands for it: the nearest is on either edge of the sole, 6 cm
-    to the side, as the mesh has it, and footprints are where balls are.
+    They count from the ankle, the tip from the head of the toes. The ball lies under the head of the toes: footprints
+    are where balls are, and the nearest vertex lies on either edge, as the mesh has it, 6 cm to the side.
     """
     shoes = np.flatnonzero(figure.labels == figure.label_names.index("shoes"))
     left = figure.vertices[shoes, 1] > 0
     own = figure.vertices[shoes[left if side == "left" else ~left]]
     foot, toes = figure.bone(f"{side}_foot"), figure.bone(f"{side}_toes")
     low = own[own[:, 2] < 0.025]
-    heel, tip, ball = low[np.argmin(low[:, 0])], low[np.argmax(low[:, 0])], figure.heads[toes]
+    ball = figure.heads[toes]
+    beside = low[np.abs(low[:, 0] - ball[0]) < BESIDE]
+    ends = [low[np.argmin(low[:, 0])], ball, low[np.argmax(low[:, 0])]]
+    edges = [beside[np.argmin(beside[:, 1])], beside[np.argmax(beside[:, 1])]]
     return np.stack(
         [
             figure.to_neutral[bone] @ (point * (1, 1, 0) - figure.heads[bone])
-            for point, bone in ((heel, foot), (ball, foot), (tip, toes))
+            for point, bone in zip([*ends, *edges], (foot, foot, toes, foot, foot), strict=True)
         ]
     )
 

@@ -145,7 +145,7 @@ def _footfall(
 def _lowest(figure: Figure, worlds: np.ndarray, side: str) -> np.ndarray:
     """(T, 3) metres: from the ankle: the ball's x and y, and the z of heel, ball or tip, whichever is lowest."""
     foot, toes = figure.bone(f"{side}_foot"), figure.bone(f"{side}_toes")
-    heel, ball, tip = foot_points(figure, side)
+    heel, ball, tip = foot_points(figure, side)[:3]
     points = [worlds[:, foot] @ heel, worlds[:, foot] @ ball]
     points.append(worlds[:, foot] @ figure.neutral_offsets[toes] + worlds[:, toes] @ tip)
     return np.column_stack([points[1][:, :2], np.min(points, axis=0)[:, 2]])

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from muybridge.synthetic.clip import Motion
 from muybridge.synthetic.description import Person
 from muybridge.synthetic.figure_file import cut_names
 from muybridge.synthetic.outfits import BARE, Garment
@@ -14,7 +15,7 @@ from muybridge.synthetic.textures import Colour
 
 WOMEN = ("old_woman", "slight_woman", "woman")
 OLD = ("old_man", "old_woman")
-#: What is worn by chance; women wear skirts too.
+#: What is worn by chance; women wear skirts too, but not to jog: knees would come through.
 CUTS = tuple(name for name in cut_names() if name != "skirt")
 #: Repeated by how common they are.
 HAIR_OF_WOMEN, HAIR_OF_OTHERS = ("short", "long", "bun"), ("short", "short", "short", "long")
@@ -41,7 +42,8 @@ def dressed(seed: Sequence[int], person: Person, looseness: tuple[float, float])
     """
     rng = np.random.default_rng([*seed, 30200])
     woman, old = person.figure in WOMEN, person.figure in OLD
-    cut = str(rng.choice((*CUTS, "skirt") if woman else CUTS))
+    jogs = isinstance(person.motion, Motion) and person.motion.kind == "jog"
+    cut = str(rng.choice((*CUTS, "skirt") if woman and not jogs else CUTS))
     hair = str(rng.choice(HAIR_OF_WOMEN if woman else HAIR_OF_OTHERS))
     colours = GREYS if old else HAIR_COLOURS
     colour = colours[int(rng.integers(len(colours)))]
