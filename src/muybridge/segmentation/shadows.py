@@ -30,6 +30,10 @@ class ShadowConfig:
     sure_above: float = 0.9
     """Below this ratio of brightness the largest change falls with its square: dark skin before a light wall has
     nearly the wall's chromaticity, and few shadows are that deep."""
+    window: int = 3
+    """Pixels: colours are also compared as means over so large a square: a dark pixel's own colour is mostly noise."""
+    noise: float = 3.0
+    """Grey values: a sensor's noise. A pixel's own colour may be off by so much more, and no more than that."""
     grey_spread: float = 0.05
     """Grey pictures: largest standard deviation of the ratio over 5 x 5 pixels."""
     minimum_brightness: float = 12.0
@@ -63,7 +67,7 @@ def shadow_mask(image: NDArray, background: NDArray, config: ShadowConfig | None
     empty = with_channels(background)
     picture = check_same_shape(image, empty.shape)
     if picture.shape[2] == 3:
-        return _only_darker(picture.astype(np.float32), empty.astype(np.float32), config)
+        return _coloured_shadow(picture, empty, np.ones(picture.shape[:2], dtype=bool), config)
     light, light_before = picture[..., 0].astype(np.float32), empty[..., 0].astype(np.float32)
     ratio = light / np.maximum(light_before, 1)
     return _in_range(ratio, light_before, config) & (_local_spread(ratio) <= config.grey_spread)
@@ -77,17 +81,46 @@ def remove_shadows(mask: NDArray, image: NDArray, background: NDArray, config: S
     if picture.shape[2] == 1:
         return mask & ~shadow_mask(picture, empty, config)
     kept = mask.copy()
-    kept[mask] = ~_only_darker(picture[mask].astype(np.float32), empty[mask].astype(np.float32), config)
+    if not mask.any():
+        return kept
+    box = _box(mask, config.window)
+    mask, picture, empty = mask[box], picture[box], empty[box]
+    kept[box][mask] = ~_coloured_shadow(picture, empty, mask, config)[mask]
     return kept
 
 
-def _only_darker(picture: NDArray, empty: NDArray, config: ShadowConfig) -> NDArray:
-    """(..., 3) colours now and before -> (...) bool."""
+def _coloured_shadow(picture: NDArray, empty: NDArray, asked: NDArray, config: ShadowConfig) -> NDArray:
+    """(H, W) bool: where asked (H, W), by the pixel itself, or by the mean over a small square where noise excuses it."""
+    found = np.zeros(asked.shape, dtype=bool)
+    own = picture[asked].astype(np.float32), empty[asked].astype(np.float32)
+    mean = _blurred(picture, config.window)[asked], _blurred(empty, config.window)[asked]
+    excused = _only_darker(*own, config, 3.0 * config.noise) & _only_darker(*mean, config)
+    found[asked] = excused | _only_darker(*own, config)
+    return found
+
+
+def _box(mask: NDArray, margin: int) -> tuple[slice, slice]:
+    """The part of a picture that holds the mask, and some pixels around it."""
+    rows, columns = np.flatnonzero(mask.any(axis=1)), np.flatnonzero(mask.any(axis=0))
+    return tuple(slice(max(0, int(at[0]) - margin), int(at[-1]) + 1 + margin) for at in (rows, columns))  # type: ignore[return-value]
+
+
+def _blurred(picture: NDArray, window: int) -> NDArray:
+    """(H, W, 3) float32: means over squares."""
+    import cv2
+
+    return cv2.blur(picture.astype(np.float32), (window, window))
+
+
+def _only_darker(picture: NDArray, empty: NDArray, config: ShadowConfig, noise: float = 0.0) -> NDArray:
+    """(..., 3) colours now and before -> (...) bool; a colour may be off by `noise` grey values more."""
     light, light_before = (colours[..., 0] + colours[..., 1] + colours[..., 2] for colours in (picture, empty))
     ratio = light / np.maximum(light_before, 1)
     before = empty / np.maximum(light_before, 1)[..., None]
     change = picture / np.maximum(light, 1)[..., None] - before
-    largest = config.chroma_change * np.square(np.minimum(1.0, ratio / config.sure_above))
+    largest = config.chroma_change * np.square(np.minimum(1.0, ratio / config.sure_above)) + noise / np.maximum(
+        light, 1
+    )
     return _in_range(ratio, light_before / 3, config) & (np.square(change).sum(axis=-1) <= np.square(largest))
 
 

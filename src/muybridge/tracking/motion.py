@@ -62,7 +62,7 @@ def _of_dofs(body: Body, place: float, root_turn: float, turn: float) -> np.ndar
 #: At 25 frames a second: 10 mm, 1.5 degrees for the root, 2.5 degrees for the limbs; see docs/benchmarks.md.
 SEARCHING = Motion(0.25, 0.65, 1.1, 0.5, 1.0, 0.0, 0.0, 0.0, 0.0)
 #: One camera sees neither how far away the person is nor whether a limb points towards it: what is usual holds these.
-ONE_CAMERA = Motion(usual_weight=3.0)
+ONE_CAMERA = Motion(root_acceleration=4.5, root_turn_acceleration=15.0, turn_acceleration=30.0, usual_weight=12.0)
 
 
 def motion_of(method: str, cameras: int) -> Motion:
