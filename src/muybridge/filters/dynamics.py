@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from muybridge.errors import InputError
 from muybridge.filters.particles import FloatArray
 
+TAIL = 4.0  # degrees of freedom of what is usual; few: unusual poses do happen
 STANDING = 1e-9  # state units; no component is known better, so that covariances can be inverted
 
 
@@ -89,6 +90,10 @@ class Dynamics(Protocol):
     @property
     def usual_sd(self) -> FloatArray:
         """How far from there they mostly are; inf where nothing is known."""
+        ...
+
+    def usual_precision(self, place: FloatArray) -> FloatArray:
+        """(D,) the pull of `log_usual` at a place (D,), over the distance from `usual`."""
         ...
 
     def log_usual(self, particles: FloatArray) -> FloatArray:
@@ -172,10 +177,15 @@ class GaussianWalk:
         return reflect(particles + self._drift(velocity) + noise, self.lower, self.upper)
 
     def log_usual(self, particles: FloatArray) -> FloatArray:
-        """See `Dynamics.log_usual`: independent normals."""
+        """See `Dynamics.log_usual`: independent Student densities, so that what is unusual stays possible."""
         away = (particles - self.usual) / self.usual_sd
-        log_density: FloatArray = -0.5 * np.einsum("nd,nd->n", away, away)
+        log_density: FloatArray = -0.5 * (TAIL + 1) * np.log1p(away * away / TAIL).sum(axis=1)
         return log_density
+
+    def usual_precision(self, place: FloatArray) -> FloatArray:
+        """(D,) how strongly what is usual pulls from a place (D,): (nu + 1) / (nu + z^2) / sd^2."""
+        away = (place - self.usual) / self.usual_sd
+        return (TAIL + 1) / (TAIL + away * away) / self.usual_sd**2
 
     def carry(self, belief: Belief) -> Belief:
         """The place as it was, less surely; no velocity is believed in."""

@@ -212,7 +212,7 @@ class _Prior:
         self.belief, self.dynamics = belief, dynamics
         span = dynamics.upper - dynamics.lower
         known = np.where(np.isfinite(span), 12.0 / np.maximum(span, 1e-6) ** 2, 1e-9)  # of a uniform density
-        usual = dynamics.usual_sd**-2.0
+        usual = dynamics.usual_precision(belief.mean)
         self.precision: FloatArray = np.linalg.inv(belief.covariance).astype(np.float64) + np.diag(known + usual)
         towards = np.linalg.solve(self.precision, usual * (dynamics.usual - belief.mean))
         self.mean: FloatArray = np.clip(belief.mean + towards, dynamics.lower, dynamics.upper)

@@ -90,7 +90,7 @@ def remove_shadows(mask: NDArray, image: NDArray, background: NDArray, config: S
 
 
 def _coloured_shadow(picture: NDArray, empty: NDArray, asked: NDArray, config: ShadowConfig) -> NDArray:
-    """(H, W) bool: where asked (H, W), by the pixel itself, or by the mean over a small square where noise excuses it."""
+    """(H, W) bool: where asked (H, W), by the pixel itself, or where noise excuses it by its square."""
     found = np.zeros(asked.shape, dtype=bool)
     own = picture[asked].astype(np.float32), empty[asked].astype(np.float32)
     mean = _blurred(picture, config.window)[asked], _blurred(empty, config.window)[asked]

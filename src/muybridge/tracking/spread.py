@@ -71,7 +71,7 @@ def laplace(
     What was known before the picture is one frame's motion about the estimate, and what is usual.
     """
     seen = observation.normal_equations(pose, config.contour_m)
-    usual = dynamics.usual_sd**-2.0
+    usual = dynamics.usual_precision(pose)
     precision = seen.curvature / config.dependence + np.diag(np.maximum(dynamics.noise_sd, 1e-6) ** -2.0 + usual)
     step = np.linalg.solve(precision, seen.gradient / config.dependence + usual * (dynamics.usual - pose))
     return np.linalg.inv(precision), np.clip(step, -LARGEST_STEP, LARGEST_STEP)
