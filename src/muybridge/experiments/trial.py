@@ -122,7 +122,7 @@ class Trial:
     def motion(self) -> Motion:
         """How the person may move: the method's own, at full velocity gain where the paper is followed."""
         base = motion_of(self.method, self.clip.cameras)
-        base = replace(SEARCHING, velocity_gain=1.0) if self.printed else base
+        base = replace(SEARCHING, velocity_gain=1.0, usual_weight=0.0) if self.printed else base
         return replace(base, **dict(self.moving))
 
     @property

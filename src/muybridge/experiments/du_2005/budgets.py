@@ -10,6 +10,7 @@ import numpy as np
 
 from muybridge.evaluation.calibration import LEVELS
 from muybridge.experiments.du_2005.conditions import (
+    AT_SHAPE,
     BUDGETS,
     FILTERS,
     NAMES,
@@ -19,7 +20,6 @@ from muybridge.experiments.du_2005.conditions import (
     at_shape,
     over,
     printed,
-    shape_settings,
     working,
 )
 from muybridge.experiments.experiment import Case, Outcome, Part, Report, Row, Scale
@@ -28,6 +28,7 @@ from muybridge.experiments.summaries import coverage_table, difference_table, er
 from muybridge.experiments.trial import Clip, Trial
 from muybridge.plotting.experiments import plot_budgets, plot_coverage, plot_intervals
 from muybridge.plotting.style import new_figure
+from muybridge.tracking.motion import motion_of
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -128,7 +129,7 @@ def _curve(rows: Sequence[Row]) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.
 
 def ladder(clip: Clip) -> Iterator[tuple[str, Trial]]:
     """DE-MC 500 x 7, one change after another, from what is printed to what works."""
-    end = shape_settings("demc", clip)
+    end = AT_SHAPE["demc"]
     trial = printed("demc", clip, **SHAPES["demc"])
     yield "as printed", trial
     trial = trial.with_motion(velocity_gain=0.5)
@@ -145,6 +146,10 @@ def ladder(clip: Clip) -> Iterator[tuple[str, Trial]]:
     ):
         trial = trial.with_settings(**settings)
         yield label, trial
+    trial = trial.with_settings(reselect=end["reselect"])
+    yield f"+ selection of {end['reselect']:.0%} between layers", trial
+    usual = motion_of("demc", clip.cameras).usual_weight
+    yield f"+ usual poses, weight {usual:g}", trial.with_motion(usual_weight=usual)
 
 
 def printed_cases(scale: Scale) -> Iterator[Case]:

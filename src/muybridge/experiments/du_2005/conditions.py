@@ -27,16 +27,14 @@ NAMES = {
     "demc": "DE-MC 500 x 7",
 }
 #: What works at the thesis' shape, in place of the working settings that belong to another one: seven layers have to
-#: carry DE-MC as far as 82 do, so they start from wider noise, jump further, and keep more members alive. Compared on
-#: four walks of 36 frames (seeds 11 and 12, one run each): sharpness 50 to 3000, noise 0.8 and 1.2, c 0.1 to 0.5,
-#: lambda 0.15 to 0.5.
+#: carry DE-MC as far as 82 do, so they start from wider noise, jump further, and select between layers. Compared on
+#: walks and a jog of 60 frames with seeds 31 to 38, one run each, three cameras and one: sharpness 200 and 1000, selections
+#: of .05, .1, .2 and none, limb by limb or not.
 AT_SHAPE: dict[str, dict[str, Any]] = {
     "condensation": {},
     "annealed": {"by_limb": False},
-    "demc": {"c": 0.3, "dynamics_noise": 1.2, "sharpness": 200.0},
+    "demc": {"c": 0.3, "dynamics_noise": 1.2, "sharpness": 1000.0, "reselect": 0.1},
 }
-#: The same for a single camera, which says less: `log_prob` is a mean over cameras, not a sum.
-AT_SHAPE_ONE_CAMERA: dict[str, dict[str, Any]] = {"demc": {"dynamics_noise": 0.8, "sharpness": 100.0}}
 LIMB_ROUNDS = 18  # layers of the annealed filter: three rounds of six limbs, whatever the budget
 DEMC_RATIO = 60 / 83  # chains by generations, as in the working settings
 BUDGETS = (250, 500, 1000, 2000, 5000, 10000, 20000)
@@ -50,13 +48,8 @@ def printed(method: str, clip: Clip, **settings: Any) -> Trial:
 
 def at_shape(method: str, clip: Clip, cues: CueWeights = SILHOUETTE, **settings: Any) -> Trial:
     """Working settings at the thesis' particles and layers."""
-    chosen = {**SHAPES[method], **shape_settings(method, clip), **settings}
+    chosen = {**SHAPES[method], **AT_SHAPE[method], **settings}
     return Trial(clip, method, cues=cues, seed=clip.seed).with_settings(**chosen)
-
-
-def shape_settings(method: str, clip: Clip) -> dict[str, Any]:
-    """What replaces the working settings at the thesis' shape, for as many cameras as the clip has."""
-    return {**AT_SHAPE[method], **(AT_SHAPE_ONE_CAMERA.get(method, {}) if clip.cameras == 1 else {})}
 
 
 def working(method: str, clip: Clip, **settings: Any) -> Trial:
