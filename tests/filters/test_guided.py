@@ -101,34 +101,62 @@ class TestLinear:
         error = np.sqrt(np.diag(covariance) / config.particles)
         assert (np.abs(state.estimate - mean) < 5 * 1.5 * error).all()  # 1.5: weights that differ make N smaller
 
-    def test_dependence_and_noise_widen(self) -> None:
-        """The likelihood's information is divided by both: the mode moves towards the prior, and is known less well."""
+    def test_dependence_widens(self) -> None:
+        """The likelihood's information is divided by it: the mode moves towards the prior, and is known less well."""
         measured = measurements(1)[0]
         rng, state = begin(LINEAR)
         config = replace(LINEAR, dependence=3.0)
-        wide, _ = guided.step(rng, state, Linear(measured, noise=2.0), GaussianWalk(WALK_SD), config)
+        wide, _ = guided.step(rng, state, Linear(measured), GaussianWalk(WALK_SD), config)
         prior = np.linalg.inv(np.diag(START_SD**2 + WALK_SD**2))
-        expected = np.linalg.inv((SEES.T / VARIANCE) @ SEES / 6.0 + prior)
+        expected = np.linalg.inv((SEES.T / VARIANCE) @ SEES / 3.0 + prior)
         np.testing.assert_allclose(wide.covariance, expected, atol=1e-7)
-        np.testing.assert_allclose(wide.estimate, expected @ (SEES.T / VARIANCE @ measured) / 6.0, atol=1e-7)
+        np.testing.assert_allclose(wide.estimate, expected @ (SEES.T / VARIANCE @ measured) / 3.0, atol=1e-7)
 
     def test_what_is_usual_counts_once_a_frame(self) -> None:
-        """A third normal density: its precision is added, and pulls towards its mean."""
+        """A third density: its precision where the prediction is, (nu + 1) / (nu + z^2) / sd^2, pulls to its mean."""
         measured = measurements(1)[0]
         rng, state = begin(LINEAR)
         usual, usual_sd = np.array([1.0, 0.0, -1.0]), np.array([0.2, np.inf, 0.1])
         dynamics = GaussianWalk(WALK_SD, usual=usual, usual_sd=usual_sd)
         state, _ = guided.step(rng, state, Linear(measured), dynamics, LINEAR)
-        precision = (SEES.T / VARIANCE) @ SEES + np.diag((START_SD**2 + WALK_SD**2) ** -1 + usual_sd**-2)
+        pulling = 5.0 / (4.0 + (usual / usual_sd) ** 2) / usual_sd**2
+        precision = (SEES.T / VARIANCE) @ SEES + np.diag((START_SD**2 + WALK_SD**2) ** -1 + pulling)
         np.testing.assert_allclose(state.covariance, np.linalg.inv(precision), atol=1e-7)
-        pull = (SEES.T / VARIANCE) @ measured + usual / usual_sd**2
+        pull = (SEES.T / VARIANCE) @ measured + usual * pulling
         np.testing.assert_allclose(state.estimate, np.linalg.solve(precision, pull), atol=1e-7)
+
+
+class TestBelief:
+    def test_freeing_a_block_leaves_a_covariance(self) -> None:
+        """Place and velocity together stay positive definite after a jump and what is then seen, over many frames."""
+        rng = np.random.default_rng(0)
+        dynamics = NearlyConstantVelocity(np.full(SIZE, 0.3), gain=1.0, acceleration_sd=np.full(SIZE, 0.05))
+        belief = Belief.at_rest(np.zeros(SIZE), START_SD)
+        for frame in range(30):
+            belief = dynamics.carry(belief)
+            if frame % 3 == 0:
+                belief = belief.freed(np.array([frame // 3 % SIZE]), np.array([0.5]), 0.5)
+            sees = rng.normal(size=(1, SIZE))  # one direction a frame: the others drift
+            precision = np.linalg.inv(belief.covariance) + 1e4 * sees.T @ sees
+            belief = belief.corrected(belief.mean, np.linalg.inv(precision))
+            both = np.block([[belief.covariance, belief.cross], [belief.cross.T, belief.velocity_covariance]])
+            assert np.linalg.eigvalsh(0.5 * (both + both.T)).min() > 0
+
+    def test_a_jump_moves_no_velocity(self) -> None:
+        dynamics = NearlyConstantVelocity(np.full(SIZE, 0.3), gain=1.0, acceleration_sd=np.full(SIZE, 0.05))
+        carried = dynamics.carry(Belief.at_rest(np.zeros(SIZE), START_SD))
+        freed = carried.freed(np.array([1]), np.array([0.5]), 0.5)
+        elsewhere = freed.mean + (0.0, 2.0, 0.0)
+        np.testing.assert_allclose(
+            freed.corrected(elsewhere, 0.1 * freed.covariance).velocity, carried.velocity, atol=1e-12
+        )
+        assert np.abs(carried.corrected(elsewhere, 0.1 * carried.covariance).velocity[1]) > 0.1
 
 
 class TestVelocity:
     """Place and velocity under white accelerations, against the textbook's Kalman filter of twice the size."""
 
-    SPEED_SD, CHANGE_SD = np.array([0.1, 0.2, 0.05]), np.array([0.02, 0.05, 0.01])
+    SPEED_SD, CHANGE_SD = np.array([0.3, 0.4, 0.3]), np.array([0.02, 0.05, 0.01])  # velocities stay within the first
 
     def textbook(self, frames: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         one, none = np.eye(SIZE), np.zeros((SIZE, SIZE))

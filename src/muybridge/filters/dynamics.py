@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from muybridge.errors import InputError
 from muybridge.filters.particles import FloatArray
 
+WIDEST = 3.0  # state units: an angle that may be so far off, or a place in metres, is not known at all
 TAIL = 4.0  # degrees of freedom of what is usual; few: unusual poses do happen
 STANDING = 1e-9  # state units; no component is known better, so that covariances can be inverted
 
@@ -56,12 +57,16 @@ class Belief:
 
     def freed(self, block: NDArray[np.intp], values: FloatArray, sd: float) -> Belief:
         """The same with one block's components (B,) about `values`, wherever they were: a jump tells no velocity."""
-        mean, covariance, gain = self.mean.copy(), self.covariance.copy(), self.velocity_gain.copy()
+        mean, covariance, cross = self.mean.copy(), self.covariance.copy(), self.cross.copy()
         mean[block] = values
         covariance[block, :] = covariance[:, block] = 0.0
         covariance[block, block] = sd**2
+        cross[block, :] = 0.0
+        gain = self.velocity_gain.copy()
         gain[block, :] = gain[:, block] = 0.0
-        return replace(self, mean=mean, covariance=covariance, velocity_gain=gain)
+        if cross.any():
+            gain = np.linalg.solve(covariance, cross).T.astype(np.float64)
+        return replace(self, mean=mean, covariance=covariance, cross=cross, velocity_gain=gain)
 
 
 class Dynamics(Protocol):
@@ -270,16 +275,29 @@ class NearlyConstantVelocity(ConstantVelocity):
     def carry(self, belief: Belief) -> Belief:
         """X + V, and V: F P F' + Q with F = [[1, g], [0, g]] and Q = [[1/4, 1/2], [1/2, 1]] q^2."""
         gain, q = self.gain, np.diag(self.acceleration_sd**2)
-        known = not np.isnan(belief.velocity_covariance).any()
-        speeds = belief.velocity_covariance if known else self._noise
-        cross = belief.cross
-        covariance = (
-            belief.covariance + gain * (cross + cross.T) + gain**2 * speeds + q / 4 + STANDING**2 * np.eye(len(q))
-        )
+        place, cross, speeds = self._bounded(belief)
+        covariance = place + gain * (cross + cross.T) + gain**2 * speeds + q / 4 + STANDING**2 * np.eye(len(q))
+        covariance = 0.5 * (covariance + covariance.T)
         moved_cross = gain * cross + gain**2 * speeds + q / 2
         mean = reflect((belief.mean + gain * belief.velocity)[None], self.lower, self.upper)[0]
         velocity_gain: FloatArray = np.linalg.solve(covariance, moved_cross).T.astype(np.float64)
         return Belief(mean, covariance, gain * belief.velocity, moved_cross, gain**2 * speeds + q, velocity_gain)
+
+    def _bounded(self, belief: Belief) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Covariance of place, of place with velocity, of velocity (D, D), none wider than when nothing is known.
+
+        Along what no picture shows, such as the twist of a straight limb, they would grow for ever.
+        """
+        if np.isnan(belief.velocity_covariance).any():
+            return belief.covariance, belief.cross, self._noise
+        place = np.minimum(1.0, WIDEST / np.sqrt(np.diag(belief.covariance)))
+        widest = np.maximum(self.noise_sd, STANDING)
+        speed = np.minimum(1.0, widest / np.sqrt(np.maximum(np.diag(belief.velocity_covariance), STANDING**2)))
+        return (
+            place[:, None] * belief.covariance * place,
+            place[:, None] * belief.cross * speed,
+            speed[:, None] * belief.velocity_covariance * speed,
+        )
 
     def velocity_after(self, velocity: FloatArray, step: FloatArray) -> FloatArray:
         """V + follow (step - V), where V is what was expected to last."""

@@ -28,7 +28,7 @@ NAMES = {
 }
 #: What works at the thesis' shape, in place of the working settings that belong to another one: seven layers have to
 #: carry DE-MC as far as 82 do, so they start from wider noise, jump further, and select between layers. Compared on
-#: walks and a jog of 60 frames with seeds 31 to 38, one run each, three cameras and one: sharpness 200 and 1000, selections
+#: walks and a jog of 60 frames, seeds 31 to 38, one run each, three cameras and one: sharpness 200, 1000, selections
 #: of .05, .1, .2 and none, limb by limb or not.
 AT_SHAPE: dict[str, dict[str, Any]] = {
     "condensation": {},
