@@ -26,7 +26,7 @@ Observe = Callable[[ImageLikelihood, int], Observation]
 def body_of_trial(trial: Trial, evidence: Evidence) -> Body:
     """The body before any fit to the pictures: right for the figure, or by height alone; then made wrong."""
     if trial.body == "right":
-        body = right_body(trial.clip.figure)
+        body = right_body(trial.clip)
     else:
         body = named_body("person").with_height(round(evidence.stature, 2))
     if trial.torso == "round":

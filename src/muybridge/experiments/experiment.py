@@ -63,7 +63,7 @@ def scale_of(quick: bool, seeds: int | None = None) -> Scale:
         raise InputError("seeds", expected="at least 1", got=str(seeds))
     if quick:
         return Scale(True, seeds or QUICK_SEEDS, known_figures()[:1], known_motions()[:1], 20)
-    return Scale(False, seeds or DEFAULT_SEEDS, known_figures()[:3], known_motions()[:3], 60)
+    return Scale(False, seeds or DEFAULT_SEEDS, known_figures()[:3], known_motions()[:3], 45)
 
 
 @dataclass(frozen=True)

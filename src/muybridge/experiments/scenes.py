@@ -49,6 +49,7 @@ def scene_of(clip: Clip) -> Scene:
     return scene
 
 
-def right_body(figure: str) -> Body:
-    """The tracker's body with the joint centres and girths of a baked figure."""
-    return tracker_body(figure)
+def right_body(clip: Clip) -> Body:
+    """The tracker's body with the joint centres and girths of the clip's person, as dressed."""
+    person = scene_of(clip).person
+    return tracker_body(person.figure, person.cut, person.hair)

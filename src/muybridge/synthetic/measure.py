@@ -39,19 +39,19 @@ CHAIN = {"upper_arm": "forearm", "forearm": "hand", "thigh": "shank", "shank": "
 
 
 @lru_cache(maxsize=16)
-def tracker_body(name: str) -> Body:
+def tracker_body(name: str, cut: str | None = None, hair: str | None = None) -> Body:
     """The catalogue's person with the joint centres and girths of a figure.
 
     Parameters
     ----------
-    name : a figure of `skinning.load_figure`
+    name, cut, hair : a figure of `skinning.load_figure`, and what it wears
 
     Returns
     -------
     Body
         Its joints coincide with the figure's in the neutral posture; the spine bends in one place instead of two.
     """
-    figure, body = load_figure(name), named_body("person")
+    figure, body = load_figure(name, cut, hair), named_body("person")
     centres, vertices = _neutral(figure)
     flesh = {segment.name: _flesh_of(segment.name, figure, vertices) for segment in body.segments}
     segments = tuple(_measured(segment, centres, flesh[segment.name]) for segment in body.segments)

@@ -34,7 +34,7 @@ SHARPNESS = 200.0 * 0.23  # of the settings at the thesis' shape, times how far 
 
 def measured_falls(evidence: Evidence, rng: np.random.Generator, poses: int = 200) -> dict[str, float]:
     """How far each cue falls from the true pose to poses off by TURN and MOVE (sd): the median; first frame."""
-    body = right_body(evidence.clip.figure)
+    body = right_body(evidence.clip)
     true = start_pose(body, evidence)
     near = true + rng.standard_normal((poses, len(true))) * np.where(np.arange(len(true)) < 3, MOVE, TURN)
     found = {}

@@ -68,7 +68,7 @@ def surface_report(outcome: Outcome) -> Report:
 
 def likelihood_surface(evidence: Evidence, cues: CueWeights, degrees: np.ndarray) -> np.ndarray:
     """p (n, n) of the first frame with `TURNED` off by degrees (n,) each; beyond a joint's limits as well."""
-    body = right_body(evidence.clip.figure)
+    body = right_body(evidence.clip)
     model = ImageLikelihood(body, evidence.rig, evidence.reductions, cues=cues)
     true = start_pose(body, evidence)
     observation = model.observe([view[0] for view in evidence.own], [view[0] for view in evidence.pictures])
@@ -118,7 +118,7 @@ def distance_report(outcome: Outcome) -> Report:
 
 def descriptor_distances(evidence: Evidence, frames: np.ndarray) -> np.ndarray:
     """(n, n) pixels, ||FD - FD'|| of (5.11): row the body drawn at a frame's true joints, column the mask observed."""
-    body = right_body(evidence.clip.figure)
+    body = right_body(evidence.clip)
     model = ImageLikelihood(body, evidence.rig, evidence.reductions, cues=CueWeights(silhouette=0, boundary=1))
     poses = np.array([pose_at(evidence, frame) for frame in frames])
     columns = []
@@ -132,7 +132,7 @@ def descriptor_distances(evidence: Evidence, frames: np.ndarray) -> np.ndarray:
 def pose_at(evidence: Evidence, frame: int) -> np.ndarray:
     """The right body's pose (D,) nearest to a frame's true joints."""
     later = replace(evidence, joints=evidence.joints[frame:])
-    return start_pose(right_body(evidence.clip.figure), later)
+    return start_pose(right_body(evidence.clip), later)
 
 
 def angle_cases(scale: Scale) -> Iterator[Case]:

@@ -29,7 +29,7 @@ CONDITIONS: dict[str, tuple[Faults, str, str]] = {
 
 def fault_cases(scale: Scale) -> Iterator[Case]:
     """Every fault under the default filter and DE-MC 500 x 7, three cameras; a pixel is one as recorded."""
-    clips = scale.clips(seeds=scale.few(ROBUST_SEEDS), reduction=None)
+    clips = scale.walks(seeds=scale.few(ROBUST_SEEDS), reduction=None)
     for method in ("guided", "demc"):
         trial = working("guided", clips[0]) if method == "guided" else at_shape("demc", clips[0])
         for label, (faults, masks, body) in CONDITIONS.items():

@@ -72,7 +72,7 @@ CHOICES: dict[str, tuple[dict, dict, bool]] = {
 
 def choice_cases(scale: Scale) -> Iterator[Case]:
     """DE-MC 500 x 7, one change at a time; the velocity, the estimate and the trunk of the default filter too."""
-    clips = scale.clips(seeds=SETTING_SEEDS)
+    clips = scale.walks(seeds=SETTING_SEEDS)
     for label, (settings, moving, rounded) in CHOICES.items():
         trial = at_shape("demc", clips[0], **settings).with_motion(**moving)
         yield from over(clips, label, replace(trial, torso="round") if rounded else trial)
