@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pytest
 
-from filters.oracles import NormalEquations
+from filters.oracles import GaussianLikelihood, NormalEquations
 from muybridge.errors import InputError
 from muybridge.filters import ConstantVelocity, GaussianWalk, NearlyConstantVelocity, guided
 from muybridge.filters.dynamics import Belief
@@ -124,6 +124,30 @@ class TestLinear:
         np.testing.assert_allclose(state.covariance, np.linalg.inv(precision), atol=1e-7)
         pull = (SEES.T / VARIANCE) @ measured + usual * pulling
         np.testing.assert_allclose(state.estimate, np.linalg.solve(precision, pull), atol=1e-7)
+
+    @pytest.mark.parametrize("sharpness", [1.0, 50.0])
+    def test_importance_counts_what_is_usual_once(self, sharpness: float) -> None:
+        """One component: p(y|x)^K N(x; carried) student(x), summed over a fine grid; the control has it twice."""
+        sd, usual, usual_sd = 0.3, 0.5, 0.15
+        config = guided.Config(particles=20000, sharpness=sharpness, dependence=1.0, weighting="importance",
+                               resampling="systematic", spreads=(1.0,) * 4)  # fmt: skip
+        dynamics = GaussianWalk(np.full(1, 0.2), usual=np.full(1, usual), usual_sd=np.full(1, usual_sd))
+        rng = np.random.default_rng(0)
+        state = guided.init(rng, np.zeros(1), np.full(1, 0.1), config)
+        likelihood = GaussianLikelihood(np.full(1, -0.2), sd * np.sqrt(sharpness))
+        state, info = guided.step(rng, state, likelihood, dynamics, config)
+        x = np.linspace(-3, 3, 6001)[:, None]
+        log_carried = -0.5 * (x[:, 0] ** 2) / (0.1**2 + 0.2**2)
+        log_density = sharpness * likelihood.log_prob(x) + log_carried
+        means, sds = [], []
+        for times in (1, 2):
+            weights = np.exp(log_density + times * dynamics.log_usual(x))
+            weights /= weights.sum()
+            means.append(float(weights @ x[:, 0]))
+            sds.append(float(np.sqrt(weights @ (x[:, 0] - means[-1]) ** 2)))
+        bound = 5 * sds[0] / np.sqrt(info.ess)
+        assert abs(state.estimate[0] - means[0]) < bound
+        assert abs(state.estimate[0] - means[1]) > bound
 
 
 class TestBelief:

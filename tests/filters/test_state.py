@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from muybridge.errors import InputError
-from muybridge.filters import State, state_from_arrays, state_to_arrays
+from muybridge.filters import GaussianWalk, State, state_from_arrays, state_to_arrays
 from muybridge.filters.state import CommonConfig, CountingLikelihood, initial_state
 
 
@@ -59,6 +59,19 @@ class TestCountingLikelihood:
         answer = np.array([np.nan, 0.0])
         CountingLikelihood(Answering(answer)).log_prob(np.zeros((2, 1)))
         assert np.isnan(answer[0])
+
+    @pytest.mark.parametrize("sharpness", [1.0, 200.0])
+    def test_what_is_usual_counts_once_when_all_is_sharpened(self, sharpness: float) -> None:
+        """K (log p(y | x) + log p(x) / K) is K log p(y | x) + log p(x); the impossible stays so, whatever is usual."""
+        poses, answer = np.array([[0.0], [1.0], [5.0]]), np.array([-1.0, -2.0, np.nan])
+        dynamics = GaussianWalk(np.ones(1), usual=np.ones(1), usual_sd=np.full(1, 0.5))
+        counted = CountingLikelihood(Answering(answer), dynamics, sharpness)
+        usual = dynamics.log_usual(poses)
+        assert usual[0] < usual[1] == 0.0
+        sharpened = sharpness * counted.log_prob(poses)
+        np.testing.assert_allclose(sharpened, sharpness * np.array([-1.0, -2.0, -np.inf]) + usual, rtol=1e-14)
+        np.testing.assert_array_equal(answer, [-1.0, -2.0, np.nan])
+        assert (counted.evaluations, counted.invalid) == (3, 1)
 
     def test_nobody_asks_about_nobody(self) -> None:
         assert CountingLikelihood(Answering(np.zeros(5))).log_prob(np.empty((0, 2))).shape == (0,)

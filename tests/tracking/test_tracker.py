@@ -8,11 +8,13 @@ up to 53 mm where an arm passes the trunk.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from muybridge.tracking import Estimate, Tracker, TrackState
+from muybridge.tracking import Estimate, Tracker, TrackerConfig, TrackState
+from muybridge.tracking.motion import Motion
 from tracking.made import INTERVAL, PIXEL, empty_masks, errors, exact_masks, likelihood, ring, walking
 
 FRAMES = 20
@@ -131,16 +133,38 @@ class TestState:
         one, two = (tracker.step(np.random.default_rng(2), s, frames[1])[1] for s in (state, again))
         assert one.joints.tobytes() == two.joints.tobytes() and one.joint_sd.tobytes() == two.joint_sd.tobytes()
 
-    def test_predicts_half_the_last_step(self, clip) -> None:
-        """`velocity_gain` is one half."""
+    @pytest.mark.parametrize("gain", [0.5, 1.0])
+    def test_predicts_what_the_filter_predicts(self, clip, gain: float) -> None:
+        """The estimate moved on by `velocity_gain` of the velocity that the filter has estimated."""
         body, poses, rig, frames = clip
-        tracker = Tracker(likelihood(body, rig), INTERVAL)
+        tracker = Tracker(likelihood(body, rig), INTERVAL, TrackerConfig(motion=Motion(velocity_gain=gain)))
         rng = np.random.default_rng(0)
-        first = tracker.init(rng, poses[0])
-        state, estimate = tracker.step(rng, first, frames[1])
-        ahead = estimate.pose + 0.5 * (estimate.pose - poses[0])
-        within = np.clip(ahead, body.lower, body.upper)
-        np.testing.assert_allclose(tracker.predict(state), body.joints(within), atol=0.01)
+        state = tracker.init(rng, poses[0])
+        for masks in frames[1:4]:
+            state, estimate = tracker.step(rng, state, masks)
+        ahead = state.filter.estimate + gain * state.filter.velocity
+        carried = tracker.dynamics.carry(state.filter.belief).mean
+        free = (ahead >= body.lower) & (ahead <= body.upper)
+        np.testing.assert_allclose(carried[free], ahead[free], atol=1e-12)
+        assert free[:6].all()
+        np.testing.assert_allclose(tracker.predict(state), body.joints(carried), atol=1e-12)
+        assert np.abs(tracker.predict(state) - estimate.joints).max() > 0.005, "standing still would do"
+
+    def test_a_prediction_turns_back_at_a_limit(self, clip) -> None:
+        """As the filters' do: a knee that is straight and moves on bends again."""
+        body, poses, rig, _ = clip
+        tracker = Tracker(likelihood(body, rig), INTERVAL)
+        state = tracker.init(np.random.default_rng(0), poses[0])
+        knee = body.dof_names.index("left_knee_flexion")
+        pose, velocity = poses[0].copy(), np.zeros_like(poses[0])
+        pose[knee], velocity[knee] = body.lower[knee] + 0.01, -0.04
+        state = replace(state, filter=replace(state.filter, estimate=pose, velocity=velocity))
+        expected = pose.copy()
+        expected[knee] = body.lower[knee] + 0.03
+        np.testing.assert_allclose(tracker.predict(state), body.joints(expected), atol=1e-12)
+        np.testing.assert_allclose(
+            tracker.predict(state), body.joints(tracker.dynamics.carry(state.filter.belief).mean), atol=1e-12
+        )
 
     def test_weights_follow_the_costs(self, clip) -> None:
         """1 / (usual cost + trust), nothing for who does not see."""

@@ -86,7 +86,8 @@ class Config(CommonConfig):
         require("partners", self.partners in ("all", "other_half"), "all | other_half", self.partners)
         require("dynamics_noise", self.dynamics_noise >= 0, "not negative", self.dynamics_noise)
         require("reselect", self.reselect is None or 0 < self.reselect < 1, "between 0 and 1", self.reselect)
-        require("blocks", self.blocks is None or all(map(len, self.blocks)), "no empty block", self.blocks)
+        if self.blocks is not None:
+            require("blocks", len(self.blocks) > 0 and all(map(len, self.blocks)), "no empty block", self.blocks)
 
 
 PRINTED = Config()
@@ -141,8 +142,10 @@ def _moved(config: Config, layer: int, size: int) -> FloatArray:
     """(D,) 1 for the components that a layer moves, 0 for the others."""
     if config.blocks is None:
         return np.ones(size)
+    block = list(config.blocks[layer % len(config.blocks)])
+    require("blocks", 0 <= min(block) and max(block) < size, f"components 0 to {size - 1}", config.blocks)
     moved = np.zeros(size)
-    moved[list(config.blocks[layer % len(config.blocks)])] = 1.0
+    moved[block] = 1.0
     return moved
 
 

@@ -163,8 +163,9 @@ class GaussianWalk:
         usual_sd = (
             np.full_like(noise_sd, np.inf) if self.usual_sd is None else np.array(self.usual_sd, dtype=np.float64)
         )
-        if not (usual.shape == usual_sd.shape == noise_sd.shape and (usual_sd > 0).all()):
-            raise InputError("dynamics usual_sd", expected="shape (D,), above 0", got=str(self.usual_sd))
+        if not (usual.shape == usual_sd.shape == noise_sd.shape and np.isfinite(usual).all() and (usual_sd > 0).all()):
+            raise InputError("dynamics usual, usual_sd", expected="shape (D,), finite, and shape (D,), above 0",
+                             got=f"{self.usual} and {self.usual_sd}")  # fmt: skip
         columns = ("noise_sd", noise_sd), ("lower", lower), ("upper", upper), ("usual", usual), ("usual_sd", usual_sd)
         for name, value in columns:
             value.flags.writeable = False
@@ -269,6 +270,8 @@ class NearlyConstantVelocity(ConstantVelocity):
             raise InputError(
                 "dynamics acceleration_sd", expected="shape (D,), finite, not negative", got=str(acceleration_sd)
             )
+        if not 0.0 <= self.follow <= 1.0:
+            raise InputError("dynamics follow", expected="between 0 and 1", got=str(self.follow))
         acceleration_sd.flags.writeable = False
         object.__setattr__(self, "acceleration_sd", acceleration_sd)
 

@@ -205,7 +205,7 @@ def step(
 class _Prior:
     """What is known before the picture: what was carried over, times what is usual; no less than what the limits know.
 
-    mean : (D,); precision : (D, D)
+    mean : (D,); precision, carried : (D, D), the latter without what is usual
     """
 
     def __init__(self, belief: Belief, dynamics: Dynamics) -> None:
@@ -213,7 +213,8 @@ class _Prior:
         span = dynamics.upper - dynamics.lower
         known = np.where(np.isfinite(span), 12.0 / np.maximum(span, 1e-6) ** 2, 1e-9)  # of a uniform density
         usual = dynamics.usual_precision(belief.mean)
-        self.precision: FloatArray = np.linalg.inv(belief.covariance).astype(np.float64) + np.diag(known + usual)
+        self.carried: FloatArray = np.linalg.inv(belief.covariance).astype(np.float64) + np.diag(known)
+        self.precision: FloatArray = self.carried + np.diag(usual)
         towards = np.linalg.solve(self.precision, usual * (dynamics.usual - belief.mean))
         self.mean: FloatArray = np.clip(belief.mean + towards, dynamics.lower, dynamics.upper)
 
@@ -305,7 +306,7 @@ def _log_weights(
         return possible
     if config.weighting == "likelihood":
         return config.sharpness * log_likelihoods
-    away = particles - prior.mean
-    log_prior = -0.5 * np.einsum("nd,de,ne->n", away, prior.precision, away)
+    away = particles - prior.belief.mean  # what is usual is part of the log likelihood already, see CountingLikelihood
+    log_prior = -0.5 * np.einsum("nd,de,ne->n", away, prior.carried, away)
     log_proposal = -0.5 * np.sum(standard**2, axis=1)
     return config.sharpness * log_likelihoods + log_prior - log_proposal
