@@ -49,6 +49,14 @@ def test_degrees_become_radians() -> None:
     np.testing.assert_allclose([body.lower[3], body.upper[3]], [-np.pi / 2, np.pi / 4])
 
 
+@pytest.mark.parametrize("text", ["usual_deg = [30, 9]", f"usual_rad = [{np.pi / 6}, {np.pi / 20}]"])
+def test_what_is_usual_by_degrees_or_radians(text: str) -> None:
+    """Angle and deviation; places have none."""
+    body = parse_body(TWO.replace("limits_deg", f"{text}, limits_deg"))
+    np.testing.assert_allclose(body.usual, [[0, 0, 0, np.pi / 6], [np.inf, np.inf, np.inf, np.pi / 20]])
+    np.testing.assert_array_equal(parse_body(TWO).usual, [[0.0] * 4, [np.inf] * 4])
+
+
 def test_fixed_turns_are_applied_from_left_to_right() -> None:
     text = TWO.replace('at = "tip"', 'orientation_deg = [["x", 90], ["z", 90]]')
     turn = parse_body(text).frames(np.zeros(4))[0, 1, :, :3]
@@ -87,6 +95,11 @@ def test_fixed_turns_are_applied_from_left_to_right() -> None:
         ('at = "tip"', "orientation = [[1,0,0],[0,1,0],[0,0,-1]]", "expected a right-handed rotation matrix"),
         ("limits_deg = [-90, 45]", "limits_deg = [45, -90]", r"limits: .* got \[45, -90\] degrees; swap them"),
         ("limits_deg = [-90, 45]", "limits_deg = [nan, 45]", "limits_deg of 'bend': expected 2 finite numbers"),
+        ("limits_deg = [-90, 45]", "usual_deg = [0, 0]", r"rotation 'bend': usual: .*, got \[0, 0\] degrees"),
+        ("limits_deg = [-90, 45]", "usual_deg = [inf, 9]", r"rotation 'bend': usual: expected an angle"),
+        ("limits_deg = [-90, 45]", "usual_deg = 9", "usual_deg of 'bend': expected 2 .*numbers, got 9"),
+        ("limits_deg = [-90, 45]", "usual_rad = [0, nan]", "usual_rad of 'bend': expected 2 .*numbers"),
+        ("limits_deg = [-90, 45]", "usual = [0, 9]", "rotation: key 'usual': .*; did you mean 'usual_"),
         ("limits_deg", "limit_deg", "rotation: key 'limit_deg': .*; did you mean 'limits_deg'"),
         ('axis = "x"', 'axis = "w"', "rotation: axis: expected one of x, y, z, -x, -y, -z, got 'w'"),
         ('name = "bend"', 'name = "root_z"', "every degree of freedom named once, got root_z"),

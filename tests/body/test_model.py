@@ -95,6 +95,8 @@ class TestTree:
             count = len(body.dof_names)
             assert body.lower.shape == body.upper.shape == (count,)
             assert np.isneginf(body.lower[:3]).all() and np.isposinf(body.upper[:3]).all()
+            assert body.usual.shape == (2, count) and np.isposinf(body.usual[1, :3]).all()
+            assert np.isfinite(body.usual[0]).all() and (body.usual[1] > 0).all()
             np.testing.assert_array_equal(np.sort(np.concatenate(list(body.blocks.values()))), np.arange(count))
             np.testing.assert_array_equal(body.blocks["root"][:3], [0, 1, 2])
 
@@ -102,6 +104,16 @@ class TestTree:
         body = named_body("du-2005")
         names = [body.dof_names[i] for i in body.blocks["left_leg"]]
         assert names == ["left_hip_flexion", "left_hip_abduction", "left_hip_rotation", "left_knee_flexion"]
+
+    def test_what_is_usual_follows_the_names(self) -> None:
+        body = two_links()
+        bent = replace(body.segments[1], rotations=(Rotation("elbow", "x", usual=0.4, usual_sd=0.2),))
+        usual = dict(zip(body.dof_names, replace(body, segments=(body.segments[0], bent)).usual.T.tolist(), strict=True))
+        assert usual["elbow"] == [0.4, 0.2] and usual["shoulder"] == [0.0, np.inf] == usual["root_x"]
+
+    def test_usual_angles_lie_within_the_limits(self) -> None:
+        for body in BODIES:
+            assert ((body.usual[0] >= body.lower) & (body.usual[0] <= body.upper)).all(), body.name
 
     @pytest.mark.parametrize(
         ("segments", "message"),

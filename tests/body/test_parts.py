@@ -40,6 +40,17 @@ def test_limits_are_in_order() -> None:
     assert Rotation("stiff", "x", 0.0, 0.0).upper == 0.0
 
 
+@pytest.mark.parametrize(("usual", "sd"), [(math.nan, 1.0), (math.inf, 1.0), (0.0, 0.0), (0.0, -0.1), (0.0, math.nan)])
+def test_what_is_usual_is_an_angle_and_a_deviation(usual: float, sd: float) -> None:
+    message = r"^rotation 'bend': usual: expected an angle and a positive deviation, got \[.*\] degrees$"
+    with pytest.raises(InputError, match=message):
+        Rotation("bend", "x", usual=usual, usual_sd=sd)
+
+
+def test_nothing_is_usual_unless_said() -> None:
+    assert Rotation("bend", "x").usual_sd == math.inf
+
+
 def test_axes_are_known() -> None:
     with pytest.raises(InputError, match="axis: expected one of x, y, z, -x, -y, -z, got 'w'"):
         Rotation("bend", "w")

@@ -44,13 +44,14 @@ def test_every_body_of_the_catalogue_comes_back(name: str, tmp_path: Path) -> No
 @settings(max_examples=60, deadline=None)
 @given(st.data())
 def test_any_body_comes_back(data: st.DataObject) -> None:
-    """Names with quotes, line ends and letters of any script; limits on one side; every number to its last digit."""
+    """Names with quotes, line ends and letters of any script; limits on one side, angles of any use; every number to its last digit."""
     draw = data.draw
     vector = st.tuples(NUMBERS, NUMBERS, NUMBERS)
     shape = Shape(draw(vector), draw(vector), draw(st.tuples(SIZES, SIZES)), draw(st.tuples(SIZES, SIZES)))
     angle = draw(NUMBERS)
     turned = ((math.cos(angle), -math.sin(angle), 0.0), (math.sin(angle), math.cos(angle), 0.0), (0.0, 0.0, 1.0))
-    rotations = (Rotation(draw(WORDS), "-y", -math.inf, draw(NUMBERS)), Rotation("free", "z"))
+    usual = draw(NUMBERS), draw(SIZES | st.just(math.inf))
+    rotations = (Rotation(draw(WORDS), "-y", -math.inf, draw(NUMBERS), *usual), Rotation("free", "z"))
     segments = (
         Segment("root", shape=shape, length_group=draw(WORDS), radius_group=""),
         Segment(draw(WORDS) + "!", "root", draw(vector), draw(st.booleans()), turned, rotations, block=draw(WORDS)),

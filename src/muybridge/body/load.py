@@ -131,9 +131,9 @@ def _rotation(entry: Mapping[str, Any]) -> Rotation:
             limits = _numbers(f"limits_rad of {name!r}", entry["limits_rad"], 2, endless=True)  # type: ignore[assignment]
         usual = (0.0, np.inf)
         if "usual_deg" in entry:
-            usual = tuple(np.radians(_numbers(f"usual_deg of {name!r}", entry["usual_deg"], 2)))
+            usual = tuple(np.radians(_numbers(f"usual_deg of {name!r}", entry["usual_deg"], 2, endless=True)))
         elif "usual_rad" in entry:
-            usual = _numbers(f"usual_rad of {name!r}", entry["usual_rad"], 2)  # type: ignore[assignment]
+            usual = _numbers(f"usual_rad of {name!r}", entry["usual_rad"], 2, endless=True)  # type: ignore[assignment]
         return Rotation(name, axis, *map(float, (*limits, *usual)))
 
 

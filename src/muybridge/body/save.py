@@ -71,7 +71,9 @@ def _rotation_text(rotation: Rotation) -> str:
     limits = ""
     if np.isfinite(rotation.lower) or np.isfinite(rotation.upper):
         limits = f", limits_rad = {_listed((rotation.lower, rotation.upper))}"
-    usual = f", usual_rad = {_listed((rotation.usual, rotation.usual_sd))}" if np.isfinite(rotation.usual_sd) else ""
+    usual = ""
+    if rotation.usual != 0.0 or np.isfinite(rotation.usual_sd):
+        usual = f", usual_rad = {_listed((rotation.usual, rotation.usual_sd))}"
     return f"{{name = {_quoted(rotation.name)}, axis = {_quoted(rotation.axis)}{limits}{usual}}}"
 
 
