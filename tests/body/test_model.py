@@ -108,7 +108,9 @@ class TestTree:
     def test_what_is_usual_follows_the_names(self) -> None:
         body = two_links()
         bent = replace(body.segments[1], rotations=(Rotation("elbow", "x", usual=0.4, usual_sd=0.2),))
-        usual = dict(zip(body.dof_names, replace(body, segments=(body.segments[0], bent)).usual.T.tolist(), strict=True))
+        usual = dict(
+            zip(body.dof_names, replace(body, segments=(body.segments[0], bent)).usual.T.tolist(), strict=True)
+        )
         assert usual["elbow"] == [0.4, 0.2] and usual["shoulder"] == [0.0, np.inf] == usual["root_x"]
 
     def test_usual_angles_lie_within_the_limits(self) -> None:

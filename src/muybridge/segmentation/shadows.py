@@ -45,6 +45,10 @@ class ShadowConfig:
                              got=f"{self.darkest:g} and {self.brightest:g}")  # fmt: skip
         if self.sure_above <= 0:
             raise InputError("shadow sure_above", expected="above 0", got=f"{self.sure_above:g}")
+        if self.window < 1:
+            raise InputError("shadow window", expected="1 pixel or more", got=f"{self.window:g}")
+        if not self.noise >= 0:  # NaN fails too
+            raise InputError("shadow noise", expected="0 grey values or more", got=f"{self.noise:g}")
         if self.chroma_change < 0 or self.grey_spread < 0:
             raise InputError("shadow chroma_change and grey_spread", expected="0 or more",
                              got=f"{self.chroma_change:g} and {self.grey_spread:g}")  # fmt: skip
