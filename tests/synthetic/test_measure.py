@@ -104,8 +104,9 @@ def test_its_outlines_are_nearly_the_figures(name: str) -> None:
     """
     figure, body = load_figure(name), tracker_body(name)
     turns = 0.3 + 2 * np.pi * np.arange(5) / 5
-    rig = Rig(tuple(looking_at(f"c{i}", np.array([3 * np.cos(turn), 3 * np.sin(turn), 0.4]), np.array([0, 0, -0.1]), focal=600.0,
-                               size=(480, 480)) for i, turn in enumerate(turns)))  # fmt: skip
+    places = 3 * np.column_stack([np.cos(turns), np.sin(turns), np.full(5, 0.13)])
+    aim = np.array([0.0, 0.0, -0.1])
+    rig = Rig(tuple(looking_at(f"c{i}", at, aim, focal=600.0, size=(480, 480)) for i, at in enumerate(places)))
     masks = masks_of(figure, rig)
     assert all(not (mask[[0, -1]].any() or mask[:, [0, -1]].any()) for mask in masks), "cut off by the picture"
     costs = []
