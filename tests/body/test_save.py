@@ -44,8 +44,8 @@ def test_every_body_of_the_catalogue_comes_back(name: str, tmp_path: Path) -> No
 @settings(max_examples=60, deadline=None)
 @given(st.data())
 def test_any_body_comes_back(data: st.DataObject) -> None:
-    """Names with quotes, line ends and letters of any script; limits on one side; angles that are usual, with a deviation
-    or without; every number to its last digit.
+    """Names with quotes, line ends and letters of any script; limits on one side; angles that are usual, with and
+    without a deviation; every number to its last digit.
     """
     draw = data.draw
     vector = st.tuples(NUMBERS, NUMBERS, NUMBERS)

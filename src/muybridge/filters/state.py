@@ -83,7 +83,7 @@ class Info:
     evaluations, invalid : int
         Likelihoods asked for, and how many of the answers were NaN or +inf (treated as impossible).
     log_likelihood : float
-        Of the estimate, as the likelihood gave it (not sharpened); -inf when collapsed.
+        Of the estimate, not sharpened, with log p(x) / K of what is usual; -inf when collapsed.
     spread_before, spread_after : (D,) float64
         Standard deviation of the predicted particles, and of the weighted ones.
     collapsed : bool
