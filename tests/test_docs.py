@@ -20,10 +20,12 @@ import pytest
 from muybridge.cli.app import COMMANDS
 from muybridge.io import job
 from muybridge.io._tables import Table
+from muybridge.tracking.motion import motion_of
 
 ROOT = Path(__file__).resolve().parents[1]
-PAGES = sorted([*ROOT.glob("*.md"), *(ROOT / "docs").rglob("*.md")])
+PAGES = sorted([*ROOT.glob("*.md"), *(ROOT / "docs").rglob("*.md"), *(ROOT / "papers").rglob("*.md")])
 MARKED = re.compile(r"^<!-- run -->\n+```(console|python)\n(.*?)^```", re.MULTILINE | re.DOTALL)
+MOTION_ROW = r"^\| `(\w+)`" + 4 * r" \| ([\d.]+)"
 LINK = re.compile(r"!?\[[^\]]*\]\(([^)\s]+)\)")
 
 
@@ -96,6 +98,14 @@ def test_the_job_page_names_every_key_and_no_other() -> None:
     tables = {"calibration", "camera", "body", "start", "filter", "motion", "likelihood", "reference", "settings"}
     assert documented == keys - tables
     assert all(re.search(rf"^## `\[+{table}\]", page, re.MULTILINE) for table in tables - {"settings"})
+
+
+def test_the_job_page_has_the_defaults_of_motion() -> None:
+    """Columns: guided, with one camera, others, with one camera."""
+    section = (ROOT / "docs/job.md").read_text(encoding="utf-8").split("## `[motion]`")[1].split("\n## ")[0]
+    rows = {row[0]: [float(value) for value in row[1:]] for row in re.findall(MOTION_ROW, section, re.MULTILINE)}
+    ours = [motion_of(method, cameras) for method in ("guided", "annealed") for cameras in (3, 1)]
+    assert rows == {field: [getattr(motion, field) for motion in ours] for field in vars(ours[0])}
 
 
 def test_the_first_screen_says_what_to_type() -> None:

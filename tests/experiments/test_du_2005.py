@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -30,8 +31,10 @@ from muybridge.likelihood.cues import CueWeights
 
 CLIP = Clip()
 DIMENSIONS = 12
-#: Parts whose report needs nothing but results.
-TABLED = [part for part in EXPERIMENT.parts if part.name not in ("surface", "descriptors", "angles")]
+#: Parts whose report needs more than results; each has one table, of its own name.
+DRAWN = {"surface", "descriptors", "angles"}
+TABLED = [part for part in EXPERIMENT.parts if part.name not in DRAWN]
+PAGE = Path(__file__).parents[2] / "papers/du-2005/README.md"
 
 
 class Bowl:
@@ -80,7 +83,7 @@ def test_the_ladder_leads_from_printed_to_working(view: str) -> None:
     assert first == printed("demc", first.clip, **SHAPES["demc"])
     working = at_shape("demc", last.clip)
     assert last.filter_config == working.filter_config and last.motion == working.motion and last.cues == working.cues
-    assert len({case.trial for case in cases}) == len({case.label for case in cases}) == 8
+    assert len({case.trial for case in cases}) == len({case.label for case in cases}) == 10
 
 
 def test_mixtures_have_the_cues_they_name() -> None:
@@ -111,7 +114,7 @@ class TestParts:
 
     @pytest.mark.parametrize(
         "part",
-        [p for p in EXPERIMENT.parts if p.name not in ("surface", "descriptors", "angles")],
+        TABLED,
         ids=lambda p: p.name,
     )
     def test_a_report_of_made_up_results(self, part, tmp_path: Path) -> None:
@@ -126,6 +129,14 @@ class TestParts:
     def test_names_of_files_are_used_once(self, tmp_path: Path) -> None:
         names = [table.name for part in TABLED for table in part.report(outcome(part, tmp_path)).tables]
         assert len(names) == len(set(names))
+
+    def test_the_page_names_tables_that_there_are(self, tmp_path: Path) -> None:
+        """In the column of tables of the claims."""
+        made = {table.name for part in TABLED for table in part.report(outcome(part, tmp_path)).tables}
+        claims = PAGE.read_text(encoding="utf-8").split("## Claims")[1].split("\n## ")[0]
+        cells = [row.split("|")[2] for row in re.findall(r"^\|(.*)\|$", claims, re.MULTILINE)]
+        named = {name for cell in cells for name in re.findall(r"`([^`]+)`", cell)}
+        assert len(named) > 10 and named <= made | DRAWN
 
     def test_angle_tracks_are_kept(self) -> None:
         assert all(case.trial.keep_track for case in ANGLES.cases(SMALL))

@@ -29,17 +29,16 @@ class GaussianLikelihood:
 
 @dataclass(frozen=True)
 class NormalEquations:
-    """Minus the second derivative (D, D) and the first (D,) of a log likelihood; residuals as noisy as assumed."""
+    """Minus the second derivative (D, D) and the first (D,) of a log likelihood."""
 
     curvature: np.ndarray
     gradient: np.ndarray
-    noise: float = 1.0
 
     def of(self, components: np.ndarray | None) -> NormalEquations:
         """Of some components (B,), the others standing."""
         if components is None:
             return self
-        return NormalEquations(self.curvature[np.ix_(components, components)], self.gradient[components], self.noise)
+        return NormalEquations(self.curvature[np.ix_(components, components)], self.gradient[components])
 
 
 @dataclass(frozen=True)

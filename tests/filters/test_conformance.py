@@ -58,6 +58,11 @@ def standing_still(rng, state, *arguments):
     return state, condensation.step(rng, state, *arguments)[1]
 
 
+def knowing_nothing_usual(rng, state, likelihood, dynamics, config):
+    anywhere = replace(dynamics, usual_sd=np.full(len(dynamics.usual_sd), np.inf))
+    return condensation.step(rng, state, likelihood, anywhere, config)
+
+
 @pytest.mark.parametrize(
     ("step", "check"),
     [
@@ -65,6 +70,7 @@ def standing_still(rng, state, *arguments):
         (forgetting_limits, conformance.check_proposals_stay_within_limits),
         (miscounting, conformance.check_counts_its_evaluations),
         (standing_still, conformance.check_follows_a_motion),
+        (knowing_nothing_usual, conformance.check_takes_what_is_usual_into_account),
     ],
 )
 def test_negative_controls(step, check) -> None:

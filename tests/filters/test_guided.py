@@ -22,10 +22,9 @@ LINEAR = guided.Config(particles=4000, sharpness=1.0, dependence=1.0, spreads=(1
 
 @dataclass(frozen=True)
 class Linear:
-    """log N(measured; SEES pose, diag(VARIANCE)), its derivatives, and the noise that it claims to have found."""
+    """log N(measured; SEES pose, diag(VARIANCE)) and its derivatives."""
 
     measured: np.ndarray
-    noise: float = 1.0
 
     def log_prob(self, poses: np.ndarray) -> np.ndarray:
         return -0.5 * ((poses @ SEES.T - self.measured) ** 2 / VARIANCE).sum(axis=1)
@@ -34,7 +33,7 @@ class Linear:
         self, pose: np.ndarray, spread: float, components: np.ndarray | None = None
     ) -> NormalEquations:
         weighted = SEES.T / VARIANCE
-        return NormalEquations(weighted @ SEES, weighted @ (self.measured - SEES @ pose), self.noise).of(components)
+        return NormalEquations(weighted @ SEES, weighted @ (self.measured - SEES @ pose)).of(components)
 
 
 def measurements(frames: int) -> np.ndarray:

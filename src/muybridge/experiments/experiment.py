@@ -58,7 +58,7 @@ class Scale:
 
 
 def scale_of(quick: bool, seeds: int | None = None) -> Scale:
-    """A quick look (one person's walk, under a second) or the whole: three people, three motions, two seconds."""
+    """A quick look (one person's walk, under a second) or the whole: three people, three motions, 1.5 seconds."""
     if seeds is not None and seeds < 1:
         raise InputError("seeds", expected="at least 1", got=str(seeds))
     if quick:

@@ -20,13 +20,17 @@ CR                    config.crossover_rate
 ====================  ==========================================
 
 Differences from the paper: likelihoods live in logarithms, so (6.13) is a difference; it may be sharpened by a
-power K; noise of the dynamics may be added before the moves; the proportion of (6.20) is fixed so that the
-factor is 1 where noted in `_sigma_factor`, and the factor is bounded; crossover is a move of its own, after
-(6.13), since swapping parts of two proposals before their acceptance would not keep detailed balance; a
-proposal outside the limits is rejected.
+power K, and has in it what the dynamics holds for usual; noise of the dynamics may be added before the moves; the
+proportion of (6.20) is fixed so that the factor is 1 where noted in `_sigma_factor`, and the factor is bounded;
+crossover is a move of its own, after (6.13), since swapping parts of two proposals before their acceptance would
+not keep detailed balance; a proposal outside the limits is rejected. Two things may be added, both off unless asked
+for: a selection before every layer that leaves a share of the chains alive (`reselect`), as in the annealed filter,
+where layers are too few for chains to climb by themselves; and moves of one block of components, such as a limb, a
+layer (`blocks`), lambda (6.17) being that of the block's size.
 
 Cost: N (T + 1) likelihood evaluations a frame at most (the paper counts N T; the first population has to be
-measured too), N T more with crossover, one more for the estimate where that is the mean.
+measured too), N T more with crossover, one more for the estimate where that is the mean; selections and blocks cost
+none.
 """
 
 from __future__ import annotations

@@ -2,34 +2,39 @@
 
 A particle filter in 30 dimensions spends its particles on finding the peak. Where the likelihood can say which way is
 up (a contour can: every outline point knows how far the mask's border lies, and in which direction), a few Gauss-Newton
-steps find the mode from the prediction, and their curvature is the shape of the posterior around it. Particles drawn
-from that Gaussian (a Laplace proposal) are then weighted by the likelihood, and estimate and spread are read off them.
+steps find the mode from the prediction, and their curvature is the shape of the posterior around it. The mode is the
+estimate, and particles are drawn from that Gaussian (Laplace's approximation). They may be weighted by the likelihood,
+or by posterior over proposal (`Config.weighting`), and the estimate be read off them.
 
 After: the iterated extended Kalman filter for the climb, and the unscented and Laplace-proposal particle filters (van
 der Merwe et al. 2000; Doucet, Godsill and Andrieu 2000, section II-D) for the draw. Robust spreads: Geman and McClure
-(1987).
+(1987). The velocity is carried beside the place as in a Kalman filter, see `dynamics.Belief`.
 
 ====================  ==========================================
 symbol                name
 ====================  ==========================================
-x^-                   prediction, the dynamics' mean
-P, Q                  State.covariance; dynamics.noise_sd squared, diagonal
-Lambda                prior precision, (P + Q)^-1
+x^-                   _Prior.mean
+P                     State.covariance
+Lambda                _Prior.precision
 H_L, g                likelihood.normal_equations: curvature, gradient
 s_i                   Config.spreads, metres
 kappa                 Config.dependence
 ====================  ==========================================
 
-Each step of the climb solves (H_L + Lambda) d = g + Lambda (x^- - x) and goes from x to x + d. The posterior's
-covariance, the next frame's P, is (H_L / (kappa v) + Lambda)^-1: v is the residuals' variance relative to the one
-assumed, found in each frame, and kappa the number of neighbouring residuals that err together.
+The prior: `dynamics.carry` takes place and velocity, with their covariances, to the next frame. The inverse of the
+carried place's covariance, the precision of a uniform density between the limits, and the pull of what is usual add up
+to Lambda; x^- is the carried place, pulled towards what is usual.
+
+Each step of the climb solves (H_L / kappa + Lambda) d = g / kappa + Lambda (x^- - x) and goes from x to x + d: kappa
+neighbouring residuals err together, so that they count as one. The posterior's covariance, the next frame's P, is
+(H_L / kappa + Lambda)^-1, and the velocity follows the place as far as the two hang together.
 
 A climb finds the nearest mode, and a limb that left the picture's outline (an arm that crossed the trunk) may be found
 by no climb again. So in every frame each block of components, a limb, is also drawn anew all over its range. From the
 draws that the likelihood likes best that limb climbs alone, which is quick; where it ends better than it was, the whole
-pose climbs once more from the prediction with that limb put there and set free of its past, (P + Q) being cut and
-widened at its components. That pose is taken if it has clearly less misfit. How much less is a share of the misfit
-there is: where masks are bad, chance differences are larger too.
+pose climbs once more from the prediction with that limb put there and set free of its past, the carried covariance
+being cut and widened at its components. That pose is taken if it has clearly less misfit. How much less is a share of
+the misfit there is: where masks are bad, chance differences are larger too.
 
 Cost: `len(spreads)` looks at the contour and N likelihood evaluations a frame. With blocks, for each: `redraws`
 evaluations, and half as many looks, at that limb's contour alone, for every draw that is climbed from; and one whole
@@ -67,8 +72,7 @@ LARGEST_TURN = 0.3  # radians; a step that would turn any joint further is short
 class Linearised(Protocol):
     """Gauss-Newton's view of a log likelihood around a pose.
 
-    curvature : (D, D), minus its second derivative; gradient : (D,); noise : variance of the residuals relative to the
-    assumed one, 1 where it cannot be told.
+    curvature : (D, D), minus its second derivative; gradient : (D,), its first.
     """
 
     @property
@@ -79,11 +83,6 @@ class Linearised(Protocol):
     @property
     def gradient(self) -> FloatArray:
         """(D,), the first derivative."""
-        ...
-
-    @property
-    def noise(self) -> float:
-        """Variance of the residuals over the one assumed."""
         ...
 
 

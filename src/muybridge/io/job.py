@@ -117,7 +117,10 @@ class FilterInput(Table, frozen=True):
 
 
 class MotionInput(Table, frozen=True):
-    """`[motion]`: what a prediction does not know, one standard deviation a second; the method's own where absent."""
+    """`[motion]`: what a prediction does not know, one standard deviation a second, and what is usual.
+
+    Where absent: what suits the method and the number of cameras, `tracking.motion.motion_of`.
+    """
 
     root_speed: Weight | None = None
     """Metres a second."""
@@ -127,6 +130,8 @@ class MotionInput(Table, frozen=True):
     """Radians a second, of every other joint."""
     velocity_gain: Annotated[float, Meta(ge=0, le=1)] | None = None
     """Share of the velocity that the prediction repeats."""
+    velocity_follow: Annotated[float, Meta(ge=0, le=1)] | None = None
+    """Share of what a step surprises by that the velocity takes up, where accelerations are given; not of guided."""
     root_acceleration: Weight | None = None
     """Metres a second squared; where all three are 0, velocities are differences of places, not estimated."""
     root_turn_acceleration: Weight | None = None
