@@ -100,29 +100,33 @@ def time_likelihood(body_name: str = "bodytrack", particles: int = 512, repeats:
     cv2.setNumThreads(1)
     try:
         times = [
-            Timing(name, _best(lambda cue=cue: cue.log_prob(scene.poses), repeats) / particles)  # type: ignore[misc]
+            Timing(name, 1e6 * fastest(lambda cue=cue: cue.log_prob(scene.poses), repeats) / particles)  # type: ignore[misc]
             for name, cue in subjects.items()
         ]
         few = scene.poses[: max(1, particles // 16)]
         times.append(
-            Timing("OpenCV + NumPy, silhouette", _best(lambda: peer_silhouettes(scene, few), repeats) / len(few))
+            Timing(
+                "OpenCV + NumPy, silhouette", 1e6 * fastest(lambda: peer_silhouettes(scene, few), repeats) / len(few)
+            )
         )
-        times.append(Timing("OpenCV + NumPy, three cues", _best(lambda: peer_log_prob(scene, few), repeats) / len(few)))
+        times.append(
+            Timing("OpenCV + NumPy, three cues", 1e6 * fastest(lambda: peer_log_prob(scene, few), repeats) / len(few))
+        )
     finally:
         numba.set_num_threads(threads)
         cv2.setNumThreads(opencv_threads)
     return times
 
 
-def _best(call: Callable[[], object], repeats: int) -> float:
-    """Microseconds of CPU time of the fastest of several calls, after one that compiles."""
+def fastest(call: Callable[[], object], repeats: int) -> float:
+    """Seconds of CPU time of the fastest of several calls, after one that compiles."""
     call()
     times = []
     for _ in range(repeats):
         start = time.process_time()
         call()
         times.append(time.process_time() - start)
-    return 1e6 * min(times)
+    return min(times)
 
 
 def peer_silhouette(body: Body, camera: Camera, pose: np.ndarray) -> tuple[np.ndarray, list[np.ndarray]]:

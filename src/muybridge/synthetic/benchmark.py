@@ -6,14 +6,13 @@ the sensor's noise not.
 
 from __future__ import annotations
 
-import time
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
 
 from muybridge.cameras.model import Camera
+from muybridge.likelihood.benchmark import fastest
 from muybridge.synthetic.motion import Motion, perform
 from muybridge.synthetic.posture import mesh_at, posture_at
 from muybridge.synthetic.rasterise import Cloth, draw
@@ -47,7 +46,7 @@ def time_rendering(name: str = "man", repeats: int = 9) -> list[RenderTiming]:
             camera, mesh_at(figure, track, FRAME, LOOSENESS), cloth
         ),
     }
-    return [RenderTiming(what, 1.0 / _best(call, repeats)) for what, call in work.items()]
+    return [RenderTiming(what, 1.0 / fastest(call, repeats)) for what, call in work.items()]
 
 
 def _filled(vertices: np.ndarray, distance: float = 4.0, size: tuple[int, int] = (640, 480)) -> Camera:
@@ -62,14 +61,3 @@ def _cloth(figure: Figure) -> Cloth:
     """Stripes on everything."""
     outfit = {label: ("stripes", (58, 46, 176), (206, 210, 214), 0.28) for label in figure.label_names}
     return clothing(np.random.default_rng(0), outfit, figure.label_names)
-
-
-def _best(call: Callable[[], object], repeats: int) -> float:
-    """Seconds of CPU time of the fastest of several calls, after one that compiles."""
-    call()
-    times = []
-    for _ in range(repeats):
-        start = time.process_time()
-        call()
-        times.append(time.process_time() - start)
-    return min(times)
