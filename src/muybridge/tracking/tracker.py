@@ -186,9 +186,10 @@ class Tracker:
     def _deviations(self, state: State, observation: Observation) -> np.ndarray:
         """(J,) metres; the guided filter knows the posterior's width, for the others it is worked out."""
         pose, spread = state.estimate, self.config.spread
-        covariance, left = laplace(observation, pose, self.dynamics, spread)
         if isinstance(state, guided.State):
             covariance, left = state.covariance, np.zeros_like(pose)
+        else:
+            covariance, left = laplace(observation, pose, self.dynamics, spread)
         return joint_deviations(pose, covariance, left, self.model.body, spread)
 
     def _reference(self, state: TrackState, observation: Observation) -> ColourReference | None:
