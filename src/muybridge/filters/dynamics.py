@@ -276,15 +276,21 @@ class NearlyConstantVelocity(ConstantVelocity):
         object.__setattr__(self, "acceleration_sd", acceleration_sd)
 
     def carry(self, belief: Belief) -> Belief:
-        """X + V, and V: F P F' + Q with F = [[1, g], [0, g]] and Q = [[1/4, 1/2], [1/2, 1]] q^2."""
+        """X + V, and V: F P F' + Q with F = [[1, g], [0, g]] and Q = [[1/4, 1/2], [1/2, 1]] q^2.
+
+        A limit is a stop: what runs into it comes to rest. Were it reflected, each frame's surprise would be a push
+        against the limit, and a straight knee's velocity would grow without end.
+        """
         gain, q = self.gain, np.diag(self.acceleration_sd**2)
         place, cross, speeds = self._bounded(belief)
         covariance = place + gain * (cross + cross.T) + gain**2 * speeds + q / 4 + STANDING**2 * np.eye(len(q))
         covariance = 0.5 * (covariance + covariance.T)
         moved_cross = gain * cross + gain**2 * speeds + q / 2
-        mean = reflect((belief.mean + gain * belief.velocity)[None], self.lower, self.upper)[0]
+        ahead = belief.mean + gain * belief.velocity
+        mean = np.clip(ahead, self.lower, self.upper)
+        velocity = np.where(mean == ahead, gain * belief.velocity, 0.0)
         velocity_gain: FloatArray = np.linalg.solve(covariance, moved_cross).T.astype(np.float64)
-        return Belief(mean, covariance, gain * belief.velocity, moved_cross, gain**2 * speeds + q, velocity_gain)
+        return Belief(mean, covariance, velocity, moved_cross, gain**2 * speeds + q, velocity_gain)
 
     def _bounded(self, belief: Belief) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Covariance of place, of place with velocity, of velocity (D, D), none wider than when nothing is known.

@@ -8,7 +8,7 @@ window, because a shadow keeps the texture of the ground and a person does not.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,6 +32,8 @@ class ShadowConfig:
     nearly the wall's chromaticity, and few shadows are that deep."""
     window: int = 3
     """Pixels: colours are also compared as means over so large a square: a dark pixel's own colour is mostly noise."""
+    mean_change: float = 0.015
+    """As `chroma_change`, of the means, which are known better."""
     noise: float = 3.0
     """Grey values: a sensor's noise. A pixel's own colour may be off by so much more, and no more than that."""
     grey_spread: float = 0.05
@@ -98,7 +100,8 @@ def _coloured_shadow(picture: NDArray, empty: NDArray, asked: NDArray, config: S
     found = np.zeros(asked.shape, dtype=bool)
     own = picture[asked].astype(np.float32), empty[asked].astype(np.float32)
     mean = _blurred(picture, config.window)[asked], _blurred(empty, config.window)[asked]
-    excused = _only_darker(*own, config, 3.0 * config.noise) & _only_darker(*mean, config)
+    surer = replace(config, chroma_change=config.mean_change)
+    excused = _only_darker(*own, config, 3.0 * config.noise) & _only_darker(*mean, surer)
     found[asked] = excused | _only_darker(*own, config)
     return found
 

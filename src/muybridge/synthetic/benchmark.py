@@ -6,6 +6,7 @@ the sensor's noise not.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 

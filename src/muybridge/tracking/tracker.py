@@ -18,7 +18,6 @@ from typing import Any
 import numpy as np
 
 from muybridge.filters import METHODS, CommonConfig, ConstantVelocity, Info, State, Weights, annealed, demc, guided
-from muybridge.filters.dynamics import reflect
 from muybridge.likelihood.colour import ColourReference
 from muybridge.likelihood.observation import ImageLikelihood, Observation
 from muybridge.tracking.motion import Motion, motion_of
@@ -206,7 +205,7 @@ class Tracker:
 
     def _predicted(self, state: TrackState) -> np.ndarray:
         ahead = state.filter.estimate + self.motion.velocity_gain * state.filter.velocity
-        return reflect(ahead[None], self.dynamics.lower, self.dynamics.upper)[0]  # as the filters do
+        return np.clip(ahead, self.dynamics.lower, self.dynamics.upper)
 
     def _doubted(self, state: TrackState, costs: np.ndarray, seeing: np.ndarray) -> bool:
         usual = state.usual_costs[seeing]
