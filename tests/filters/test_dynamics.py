@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -248,6 +250,39 @@ class TestCarry:
         np.testing.assert_allclose(found, expected, atol=1e-12)
         np.testing.assert_allclose(carried.mean, belief.mean + gain * belief.velocity, atol=1e-15)
         np.testing.assert_allclose(carried.velocity_gain @ expected[:3, :3], expected[3:, :3], atol=1e-12)
+
+
+class Reflecting(NearlyConstantVelocity):
+    """Negative control: at a limit the place is folded back and the velocity goes on."""
+
+    def carry(self, belief: Belief) -> Belief:
+        carried = super().carry(belief)
+        mean = reflect((belief.mean + belief.velocity)[None], self.lower, self.upper)[0]
+        return replace(carried, mean=mean, velocity=belief.velocity)
+
+
+class TestLimit:
+    """A joint that lies at its limit, and is seen there in every frame, half as surely as it was expected."""
+
+    def speed(self, kind: type[NearlyConstantVelocity]) -> float:
+        model = kind(np.full(1, 0.1), np.zeros(1), np.ones(1), acceleration_sd=np.full(1, 0.05))
+        belief = replace(Belief.at_rest(np.zeros(1), np.full(1, 0.1)), velocity=np.full(1, -0.01))
+        for _ in range(40):
+            belief = model.carry(belief)
+            belief = belief.corrected(np.zeros(1), 0.5 * belief.covariance)
+        return float(abs(belief.velocity[0]))
+
+    def test_is_a_stop(self) -> None:
+        model = NearlyConstantVelocity(np.full(1, 0.1), np.zeros(1), np.ones(1), acceleration_sd=np.full(1, 0.05))
+        belief = replace(Belief.at_rest(np.full(1, 0.02), np.full(1, 0.1)), velocity=np.full(1, -0.05))
+        carried = model.carry(belief)
+        assert carried.mean[0] == 0.0 and carried.velocity[0] == 0.0
+
+    def test_is_no_source_of_speed(self) -> None:
+        assert self.speed(NearlyConstantVelocity) < 0.01
+
+    def test_reflected_it_is_one(self) -> None:
+        assert self.speed(Reflecting) > 0.1
 
 
 class Unbounded(NearlyConstantVelocity):

@@ -51,9 +51,9 @@ class ShadowConfig:
             raise InputError("shadow window", expected="1 pixel or more", got=f"{self.window:g}")
         if not self.noise >= 0:  # NaN fails too
             raise InputError("shadow noise", expected="0 grey values or more", got=f"{self.noise:g}")
-        if self.chroma_change < 0 or self.grey_spread < 0:
-            raise InputError("shadow chroma_change and grey_spread", expected="0 or more",
-                             got=f"{self.chroma_change:g} and {self.grey_spread:g}")  # fmt: skip
+        for name in ("chroma_change", "mean_change", "grey_spread"):
+            if not getattr(self, name) >= 0:
+                raise InputError(f"shadow {name}", expected="0 or more", got=f"{getattr(self, name):g}")
 
 
 def shadow_mask(image: NDArray, background: NDArray, config: ShadowConfig | None = None) -> NDArray:
