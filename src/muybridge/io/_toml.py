@@ -1,10 +1,24 @@
-"""Writing TOML: the few kinds of values that a job has. Reading is the standard library's tomllib."""
+"""TOML: read with one clear line where it cannot be; written with the few kinds of values that a job has."""
 
 from __future__ import annotations
 
 import json
+import tomllib
 from collections.abc import Iterator, Mapping
+from pathlib import Path
 from typing import Any
+
+from muybridge.errors import InputError
+
+
+def load(path: Path, what: str) -> dict[str, Any]:
+    """The tables of a file that should hold `what`, such as "a job"."""
+    try:
+        return tomllib.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise InputError(str(path), expected=f"{what} file", got=error.strerror or str(error)) from error
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise InputError(str(path), expected=f"{what} in TOML", got=str(error)) from error
 
 
 def dumps(table: Mapping[str, Any]) -> str:

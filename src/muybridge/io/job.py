@@ -6,7 +6,6 @@ An unknown key is an error that names the nearest known one. docs/job.md lists e
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -218,12 +217,7 @@ def read(path: Path | str, overrides: Sequence[str] = ()) -> Job:
         Relative paths in them start from the file's folder too.
     """
     path = Path(path)
-    try:
-        table = tomllib.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise InputError(str(path), expected="a job file", got=error.strerror or str(error)) from error
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise InputError(str(path), expected="a job in TOML", got=str(error)) from error
+    table = _toml.load(path, "a job")
     return from_table(table, path.parent, overrides=overrides, source=path.name)
 
 

@@ -25,6 +25,7 @@ TAKES, GIVES = (0.0, 0.10), (0.50, 0.62)
 
 
 def walk(rng: np.random.Generator, motion: Motion) -> tuple[Angles, np.ndarray]:
+    """Normal gait: legs by tables, arms against them."""
     phase = rng.uniform() + motion.cadence * motion.times
     swing, lag = rng.uniform(17, 25), rng.uniform(-0.03, 0.03)
     angles = standing(rng, motion)
@@ -47,6 +48,7 @@ def walk(rng: np.random.Generator, motion: Motion) -> tuple[Angles, np.ndarray]:
 
 
 def wave(rng: np.random.Generator, motion: Motion) -> tuple[Angles, np.ndarray]:
+    """Standing, one arm up, the forearm to and fro."""
     side = "right" if rng.uniform() < 0.7 else "left"
     angles = standing(rng, motion)
     raised = smooth_step(motion.times / 0.9) * motion.vigour
@@ -60,6 +62,7 @@ def wave(rng: np.random.Generator, motion: Motion) -> tuple[Angles, np.ndarray]:
 
 
 def crouch(rng: np.random.Generator, motion: Motion) -> tuple[Angles, np.ndarray]:
+    """Down and up again, on both feet."""
     angles = standing(rng, motion)
     depth = 0.5 - 0.5 * np.cos(2 * np.pi * np.clip(motion.cadence * motion.times / 2.4, 0, 1))
     depth = depth * min(motion.vigour, 1.1) * rng.uniform(0.85, 1.0)

@@ -6,7 +6,6 @@ line before anything is written.
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -16,7 +15,7 @@ import numpy as np
 
 from muybridge.cameras.model import Camera, Rig
 from muybridge.errors import InputError
-from muybridge.io import _tables
+from muybridge.io import _tables, _toml
 from muybridge.synthetic.description import Person, Scene
 from muybridge.synthetic.light import Lamp, Light, Switch
 from muybridge.synthetic.motion import Motion, perform
@@ -55,12 +54,7 @@ def read(path: Path | str, overrides: Sequence[str] = ()) -> Scene:
         Settings that win over the file's, `"sensor.quality=30"`; a camera is `camera.NAME.` or `camera.0.`.
     """
     path = Path(path)
-    try:
-        table = tomllib.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise InputError(str(path), expected="a scene file", got=error.strerror or str(error)) from error
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise InputError(str(path), expected="a scene in TOML", got=str(error)) from error
+    table = _toml.load(path, "a scene")
     return from_table(table, path.parent, overrides=overrides, source=path.name)
 
 
