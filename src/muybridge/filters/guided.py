@@ -182,6 +182,7 @@ def step(
         peak = _redraw(rng, np.array(block), peak, counted, likelihood, config)
     mode = peak.pose
     precision = peak.seen.curvature / config.dependence + peak.prior.precision
+    precision = 0.5 * (precision + precision.T)  # inverses of inverses drift from symmetry
     standard = rng.standard_normal((config.particles, mode.size))
     standard[0] = 0.0  # the mode itself is always among them
     deviations = np.linalg.solve(np.linalg.cholesky(precision).T, standard.T).T
