@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import os
+import subprocess
+import sys
+import time
 from pathlib import Path
 
 import pytest
@@ -53,3 +57,36 @@ def test_clip_by_clip_and_nothing_twice() -> None:
     groups = by_clip(mixed)
     assert list(groups) == [CLIPS[1], CLIPS[0]]
     assert groups[CLIPS[1]] == [TRIALS[2], TRIALS[3]]
+
+
+CHILD = "import os; from muybridge.experiments.pool import end_with; print('here', flush=True); end_with(os.getppid())"
+PARENT = """
+import subprocess, sys
+child = subprocess.Popen([sys.executable, "-c", sys.argv[1]], stdout=subprocess.PIPE, text=True)
+child.stdout.readline()
+print(child.pid, flush=True)
+sys.stdin.readline()
+"""
+
+
+@pytest.mark.skipif(not Path("/proc/self").exists(), reason="looks into /proc")
+def test_a_worker_leaves_when_its_parent_is_killed() -> None:
+    """It looks once a second; ten are given."""
+    parent = subprocess.Popen(
+        [sys.executable, "-c", PARENT, CHILD],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        text=True,
+        env={**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)},
+    )
+    assert parent.stdout is not None
+    worker = Path("/proc") / parent.stdout.readline().strip()
+    time.sleep(1.5)
+    assert worker.exists(), "it stays while its parent lives"
+    parent.kill()
+    parent.wait()
+    for _ in range(100):
+        if not worker.exists() or (worker / "stat").read_text().rpartition(")")[2].split()[0] == "Z":
+            return
+        time.sleep(0.1)
+    pytest.fail("the worker is still there")

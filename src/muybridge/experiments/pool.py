@@ -8,6 +8,8 @@ from __future__ import annotations
 
 import os
 import signal
+import threading
+import time
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from contextlib import contextmanager
@@ -117,7 +119,9 @@ def _executor(workers: int) -> Iterator[ProcessPoolExecutor]:
     """Fresh processes of one thread each, which leave Ctrl-C to their parent."""
     before = {name: os.environ.get(name) for name in ONE_THREAD}
     os.environ.update(ONE_THREAD)  # read by libraries as they are imported: before any process starts
-    executor = ProcessPoolExecutor(workers, mp_context=get_context("spawn"), initializer=_begin)
+    executor = ProcessPoolExecutor(
+        workers, mp_context=get_context("spawn"), initializer=_begin, initargs=(os.getpid(),)
+    )
     try:
         yield executor
     finally:
@@ -126,6 +130,14 @@ def _executor(workers: int) -> Iterator[ProcessPoolExecutor]:
             os.environ.pop(name) if value is None else os.environ.update({name: value})
 
 
-def _begin() -> None:
+def _begin(parent: int) -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     threadpool_limits(limits=1, user_api="blas")
+    threading.Thread(target=end_with, args=(parent,), daemon=True).start()
+
+
+def end_with(parent: int) -> None:
+    """Leave when the parent process is gone: one that was killed cannot send its workers home."""
+    while os.getppid() == parent:
+        time.sleep(1.0)
+    os._exit(1)
