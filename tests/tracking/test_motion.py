@@ -10,7 +10,7 @@ import pytest
 from muybridge.body import Body, named_body
 from muybridge.errors import InputError
 from muybridge.filters import METHODS, ConstantVelocity, NearlyConstantVelocity
-from muybridge.tracking.motion import SEARCHING, Motion, motion_of
+from muybridge.tracking.motion import FRAME, SEARCHING, Motion, motion_of
 
 MOTION = Motion(1.0, 2.0, 4.0, 0.75, 0.3, 8.0, 16.0, 32.0, usual_weight=4.0)
 STILL = replace(MOTION, root_acceleration=0.0, root_turn_acceleration=0.0, turn_acceleration=0.0)
@@ -35,18 +35,22 @@ class TestDynamics:
         assert type(dynamics) is ConstantVelocity and dynamics.gain == 0.75
 
     @pytest.mark.parametrize("interval", [1 / 25, 1 / 100])
-    def test_speeds_go_with_time_and_accelerations_with_its_square(self, body: Body, interval: float) -> None:
-        """Place, turns of the root, and every other joint have values of their own."""
+    def test_speeds_go_with_time_and_accelerations_with_its_root_besides(self, body: Body, interval: float) -> None:
+        """Place, turns of the root, and every other joint have values of their own, stated for frames of FRAME seconds.
+
+        N accelerations of a t^2 in a second, t = 1 / N, change the velocity per second by sqrt(N) a t: alike for every
+        t if a is multiplied by sqrt(FRAME / t).
+        """
         root = np.array([name.startswith("root_") for name in body.dof_names])
         turns = root & (np.arange(len(root)) >= 3)
         dynamics = MOTION.dynamics(body, interval)
         for values, power, (place, turn, other) in (
-            (dynamics.noise_sd, 1, (1.0, 2.0, 4.0)),
-            (dynamics.acceleration_sd, 2, (8.0, 16.0, 32.0)),
+            (dynamics.noise_sd, interval, (1.0, 2.0, 4.0)),
+            (dynamics.acceleration_sd, interval**2 * np.sqrt(FRAME / interval), (8.0, 16.0, 32.0)),
         ):
-            np.testing.assert_allclose(values[:3], place * interval**power)
-            np.testing.assert_allclose(values[turns], turn * interval**power)
-            np.testing.assert_allclose(values[~root], other * interval**power)
+            np.testing.assert_allclose(values[:3], place * power)
+            np.testing.assert_allclose(values[turns], turn * power)
+            np.testing.assert_allclose(values[~root], other * power)
         assert turns.sum() == 3
 
     def test_limits_are_the_bodys(self, body: Body) -> None:
@@ -56,8 +60,10 @@ class TestDynamics:
 
     @pytest.mark.parametrize("motion", [MOTION, STILL], ids=["estimated", "differences"])
     def test_the_weight_of_what_is_usual_multiplies_its_pull(self, body: Body, motion: Motion) -> None:
-        """A precision of 4 / sd^2 beside the usual place: half the deviation."""
-        dynamics = motion.dynamics(body, 0.04)
+        """A precision of 4 / sd^2 beside the usual place: half the deviation; of twice the frames each counts half."""
+        dynamics = motion.dynamics(body, FRAME)
+        often = motion.dynamics(body, FRAME / 2)
+        np.testing.assert_allclose(often.usual_sd, np.sqrt(2.0) * dynamics.usual_sd)
         np.testing.assert_array_equal(dynamics.usual, body.usual[0])
         known = np.isfinite(body.usual[1])
         assert known.any() and not known.all()

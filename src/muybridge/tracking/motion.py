@@ -15,6 +15,8 @@ from muybridge.body.model import Body
 from muybridge.errors import InputError
 from muybridge.filters import ConstantVelocity, NearlyConstantVelocity
 
+FRAME = 1.0 / 30.0  # seconds
+
 
 @dataclass(frozen=True)
 class Motion:
@@ -37,13 +39,17 @@ class Motion:
                 raise InputError(f"motion {setting.name!r}", expected="finite and not negative", got=repr(value))
 
     def dynamics(self, body: Body, interval: float) -> ConstantVelocity:
-        """Constant velocity with noise in proportion to the time between frames, `interval` seconds."""
+        """How the state moves from one frame to the next, `interval` seconds later.
+
+        What is not known grows alike in a second, whatever the frame rate: white accelerations with the square root of
+        time, and what is usual counts in proportion to it. `Motion` states both for frames of `FRAME` seconds.
+        """
         speeds = _of_dofs(body, self.root_speed, self.root_turn_speed, self.turn_speed) * interval
-        changes = (
-            _of_dofs(body, self.root_acceleration, self.root_turn_acceleration, self.turn_acceleration) * interval**2
-        )
+        changes = _of_dofs(body, self.root_acceleration, self.root_turn_acceleration, self.turn_acceleration)
+        changes *= interval**1.5 * FRAME**0.5
         usual, usual_sd = body.usual
-        usual_sd = usual_sd / np.sqrt(self.usual_weight) if self.usual_weight > 0 else np.full_like(usual_sd, np.inf)
+        weight = self.usual_weight * interval / FRAME
+        usual_sd = usual_sd / np.sqrt(weight) if weight > 0 else np.full_like(usual_sd, np.inf)
         common = speeds, body.lower, body.upper, usual, usual_sd, self.velocity_gain
         return (
             NearlyConstantVelocity(*common, changes, self.velocity_follow)
