@@ -57,7 +57,7 @@ class Result:
     evaluations, ms : float
         Of the likelihood, and processor time, a frame.
     cost : float
-        Minus the log likelihood of the estimates, all cameras alike, not sharpened; NaN through a job.
+        Two-sided silhouette cost of the estimates, all cameras alike; NaN through a job.
     moves : float
         Accepted moves a chain and frame; NaN for filters without, and through a job.
     status : str
@@ -147,7 +147,7 @@ def tracked_in_process(trial: Trial, evidence: Evidence) -> Tracked:
         state, estimate = tracker.step_observed(np.random.default_rng([trial.seed, frame, 0]), state, observation)
         milliseconds.append(1e3 * (time.process_time() - began))
         estimates.append(estimate)
-        costs.append(-float(observation.log_prob(estimate.pose[None])[0]))
+        costs.append(float(estimate.costs.mean()))
     frames = np.arange(len(estimates))
     series = JointSeries(
         model.body.joint_names,

@@ -141,7 +141,7 @@ def search_report(outcome: Outcome) -> Report:
     columns = (Column("condition"), Column("cost of the estimate", 4), Column("accepted moves a chain", 1),
                Column("error mm"), Column("evaluations", 0), Column("runs", 0))  # fmt: skip
     notes = (
-        "Cost: minus the log likelihood of the estimates, not sharpened; lower is nearer to the mode.",
+        "Cost: of the estimates' silhouettes, two-sided, between 0 and 1; lower is nearer to the mode.",
         SUMMARY_NOTES[0],
     )
     tables = []
