@@ -137,9 +137,7 @@ def joined(parts: Sequence[tuple[np.ndarray, np.ndarray]]) -> Examples:
     clips = np.repeat(np.arange(len(parts)), [len(part[0]) for part in parts])
     if not clips.size:
         raise InputError("training: examples", expected="silhouettes of somebody", got="none in any clip")
-    return Examples(
-        np.concatenate([part[0] for part in parts]), np.concatenate([part[1] for part in parts]), clips
-    )
+    return Examples(np.concatenate([part[0] for part in parts]), np.concatenate([part[1] for part in parts]), clips)
 
 
 def of_scene(
