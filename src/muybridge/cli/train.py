@@ -55,7 +55,7 @@ def train(
     seconds = time.perf_counter() - began
     calibration = trained.calibration
     reporting.say(f"{trained.examples} silhouettes of {trained.clips} clips learnt in {seconds:.0f} s; {out}")
-    reporting.say(f"held-out clips: {calibration.describe()}")
+    reporting.say(f"held out: {calibration.describe()}")
     reporting.finish(
         {
             "out": out,

@@ -44,7 +44,7 @@ class Training(Table, frozen=True):
     """Of the catalogue: whose turns are learnt."""
     seed: Seed = 0
     held_out: Annotated[float, Meta(ge=0.05, le=0.5)] = 0.2
-    """Share of the clips that is kept apart, to find out how far guesses deserve trust."""
+    """Share of the people (of the clips, where there is one) kept apart, to find out how far guesses deserve trust."""
     scenes: tuple[SceneSource, ...] = field(default=(), name="scene")
     recordings: tuple[RecordingSource, ...] = field(default=(), name="recording")
     regressor: dict[str, Any] = {}

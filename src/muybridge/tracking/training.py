@@ -1,7 +1,8 @@
 """Training a silhouette regressor: examples of rendered scenes and of tracked recordings, learnt and checked.
 
 An example is a silhouette's descriptor and the body's turns, the heading relative to the ray that the person is seen
-along. Clips are kept whole: some are held out, and tell how far the guesses of the others' model deserve trust.
+along. Whole people are held out where there are several, else whole clips: they tell how far guesses about somebody new
+deserve trust.
 """
 
 from __future__ import annotations
@@ -53,21 +54,21 @@ class Examples:
     descriptors : (N, F) float64
     outputs : (N, D) float64, radians
         As `regression.PoseOutputs` has them, the heading relative to the camera.
-    clips : (N,) int
-        Which clip each is of: frames of a clip are alike and are learnt from or held out together.
+    clips, people : (N,) int
+        Which clip and whom each shows. Frames of a clip are alike, and so are those of a person.
     """
 
     descriptors: np.ndarray
     outputs: np.ndarray
     clips: np.ndarray
+    people: np.ndarray
 
     def __len__(self) -> int:
         return len(self.descriptors)
 
-    def of(self, chosen: np.ndarray) -> Examples:
-        """Those of some clips."""
-        own = np.isin(self.clips, chosen)
-        return Examples(self.descriptors[own], self.outputs[own], self.clips[own])
+    def where(self, own: np.ndarray) -> Examples:
+        """Those of a choice (N,) bool."""
+        return Examples(self.descriptors[own], self.outputs[own], self.clips[own], self.people[own])
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,13 +108,14 @@ def config_of(training: Training) -> Config:
 
 
 def split(examples: Examples, share: float, rng: np.random.Generator) -> tuple[Examples, Examples]:
-    """(learnt from, held out): whole clips, at least one on either side."""
-    clips = np.unique(examples.clips)
-    if len(clips) < 2:
-        raise InputError("training: clips", expected="at least 2, so that one can be held out", got=str(len(clips)))
-    count = int(np.clip(round(share * len(clips)), 1, len(clips) - 1))
-    held = rng.permutation(clips)[:count]
-    return examples.of(np.setdiff1d(clips, held)), examples.of(held)
+    """(learnt from, held out): whole people where there are several, else whole clips; at least one on either side."""
+    groups = examples.people if len(np.unique(examples.people)) > 1 else examples.clips
+    names = np.unique(groups)
+    if len(names) < 2:
+        raise InputError("training: clips", expected="at least 2, so that one can be held out", got=str(len(names)))
+    count = int(np.clip(round(share * len(names)), 1, len(names) - 1))
+    held = np.isin(groups, rng.permutation(names)[:count])
+    return examples.where(~held), examples.where(held)
 
 
 def gather(training: Training, outputs: PoseOutputs, config: Config, progress: Progress | None = None) -> Examples:
