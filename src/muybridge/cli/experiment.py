@@ -28,7 +28,7 @@ def experiment(
     Parameters
     ----------
     name
-        The paper: du-2005.
+        The paper: du-2005, sedai-2013.
     out
         Where results, tables and plots go; runs/NAME where absent.
     quick
@@ -44,11 +44,11 @@ def experiment(
     """
     import os
 
-    from muybridge.experiments.experiment import scale_of
     from muybridge.experiments.harness import experiment as find
     from muybridge.experiments.harness import run_experiment
 
-    asked, scale = find(name), scale_of(quick, seeds)
+    asked = find(name)
+    scale = asked.scale(quick, seeds)
     folder = out or Path("runs") / name
     parts = [part.strip() for part in only.split(",") if part.strip()]
     if workers is None:

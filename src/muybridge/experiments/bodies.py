@@ -18,6 +18,7 @@ from muybridge.tracking.pose_input import pose_from_joints
 from muybridge.tracking.prepare import FIT_FRAMES, FIT_SECONDS
 from muybridge.tracking.tracker import Tracker, TrackerConfig
 
+WRONG_METRES = 0.5
 TRUNK = ("torso", "pelvis")
 WRONG_SEED = 20053  # of the signs by which measures are wrong: the same for every filter
 Observe = Callable[[ImageLikelihood, int], Observation]
@@ -81,3 +82,13 @@ def fitted(model: ImageLikelihood, observe: Observe, pose: np.ndarray, evidence:
             observations.append(observation)
             poses.append(estimate.pose)
     return fit_body(model, observations, np.array(poses), FitConfig())[0] if poses else model
+
+
+def wrong_pose(body: Body, evidence: Evidence) -> np.ndarray:
+    """(D,) a first pose that is wrong in every way: standing straight, turned round, half a metre beside the truth."""
+    true = start_pose(body, evidence)
+    pose = np.clip(np.zeros_like(true), body.lower, body.upper)
+    yaw = body.dof_names.index("root_yaw")
+    pose[:3], pose[yaw] = true[:3], true[yaw] + np.pi
+    pose[0] += WRONG_METRES
+    return pose

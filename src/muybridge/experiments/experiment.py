@@ -30,7 +30,7 @@ DEFAULT_SEEDS, QUICK_SEEDS = 10, 2
 class Scale:
     """How much is run.
 
-    seeds : of scene and tracker together; figures, motions : who does what; frames : of a clip
+    seeds : of scene and tracker together; figures, motions : who does what; frames, rate : of a clip; preset : where
     """
 
     quick: bool
@@ -38,11 +38,13 @@ class Scale:
     figures: tuple[str, ...]
     motions: tuple[str, ...]
     frames: int
+    preset: str = "studio"
+    rate: float = 30.0
 
     def clips(self, *, view: str = "ring", seeds: int | None = None, reduction: int | None = 2) -> tuple[Clip, ...]:
         """Every figure with every motion for every seed; seeds run slowest, so that what is done first is whole."""
         return tuple(
-            Clip(figure, motion, view, 3 if view == "ring" else 1, seed, self.frames, reduction=reduction)
+            Clip(figure, motion, view, 3 if view == "ring" else 1, seed, self.frames, self.rate, self.preset, reduction)
             for seed in range(self.seeds if seeds is None else min(seeds, self.seeds))
             for figure in self.figures
             for motion in self.motions
@@ -145,13 +147,26 @@ class Part:
     cases: Callable[[Scale], Iterator[Case]] = no_cases
 
 
+def nothing_first(scale: Scale, folder: Path, workers: int) -> None:
+    """For experiments whose trials need nothing but themselves."""
+
+
 @dataclass(frozen=True)
 class Experiment:
-    """A paper's experiments."""
+    """A paper's experiments.
+
+    Parameters
+    ----------
+    name : as on the command line; title : the paper; parts : its questions
+    scale : how much is run, from `quick` and a number of seeds
+    prepare : what is made in the folder before any trial, unless it is there: scale, folder, workers
+    """
 
     name: str
     title: str
     parts: tuple[Part, ...]
+    scale: Callable[[bool, int | None], Scale] = scale_of
+    prepare: Callable[[Scale, Path, int], None] = nothing_first
 
     def chosen(self, only: Sequence[str] = ()) -> tuple[Part, ...]:
         """The parts named, in the experiment's order; all where none is named."""

@@ -19,7 +19,7 @@ from muybridge.io.disk import disk_errors, make_folder, replace_file
 from muybridge.plotting.style import to_png, to_svg
 
 #: name -> package; imported when asked for.
-EXPERIMENTS = {"du-2005": "muybridge.experiments.du_2005"}
+EXPERIMENTS = {"du-2005": "muybridge.experiments.du_2005", "sedai-2013": "muybridge.experiments.sedai_2013"}
 RESULTS, PLOTS, REPORT_FILE = "results", "plots", "results.md"
 
 
@@ -67,6 +67,7 @@ def run_experiment(
     cases = {part.name: tuple(part.cases(scale)) for part in parts}
     claim(out, {"experiment": asked.name, "quick": scale.quick}, resume=resume)
     trials = list(dict.fromkeys(case.trial for found in cases.values() for case in found))
+    asked.prepare(scale, out, workers)
     with Store(out) as store:
         missing = [trial for trial in trials if trial not in store]
         if missing and workers > 1:
@@ -87,7 +88,7 @@ def warm_up(trials: Sequence[Trial], folder: Path) -> None:
         if kind not in seen and trial.masks != "job":
             seen.add(kind)
             short = replace(trial.clip, frames=2, reduction=8)
-            run_trial(replace(trial, clip=short, keep_track=False), folder)
+            run_trial(replace(trial, clip=short, keep_track=False, gap=()), folder)
 
 
 def _outcome(cases: Sequence[Case], store: Store, scale: Scale, out: Path) -> Outcome:

@@ -14,17 +14,19 @@ import numpy as np
 from muybridge.body import Body
 from muybridge.evaluation import JointErrors, joint_errors
 from muybridge.evaluation.angles import joint_angles
-from muybridge.experiments.bodies import body_of_trial, fitted, start_pose
+from muybridge.experiments.bodies import body_of_trial, fitted, start_pose, wrong_pose
 from muybridge.experiments.clips import Evidence, evidence_of
 from muybridge.experiments.spoiling import shifted_rig, spoilt_mask
 from muybridge.experiments.trial import Clip, Faults, Trial
 from muybridge.io.disk import make_folder
 from muybridge.io.run_folder import JointSeries, write_joints
 from muybridge.likelihood.observation import ImageLikelihood, Observation
+from muybridge.regression import SilhouetteRegressor, load_regressor
+from muybridge.tracking.silhouette_guesser import SilhouetteGuesser
 from muybridge.tracking.spread import MEASURED, SpreadConfig
 from muybridge.tracking.tracker import Tracker, TrackerConfig
 
-EVIDENCE, TRACKS, SCENES = "evidence", "tracks", "scenes"  # folders of an experiment
+EVIDENCE, TRACKS, SCENES, MODELS = "evidence", "tracks", "scenes", "models"  # folders of an experiment
 PLACE = ("pelvis",)
 LEGS = ("left_knee", "right_knee", "left_ankle", "right_ankle")
 ARMS = ("left_elbow", "right_elbow", "left_wrist", "right_wrist")
@@ -122,7 +124,7 @@ def run_trial(trial: Trial, folder: Path) -> Result:
 
         tracked = tracked_by_job(trial, evidence, folder / SCENES)
     else:
-        tracked = tracked_in_process(trial, evidence)
+        tracked = tracked_in_process(trial, evidence, guesser_of(trial, folder))
     if trial.keep_track:
         write_joints(make_folder(folder / TRACKS) / f"{trial.digest}.csv", tracked.series)
     return judged(tracked, evidence)
@@ -133,13 +135,15 @@ def _evidence(clip: Clip, folder: Path, pictures: bool) -> Evidence:
     return evidence_of(clip, folder / EVIDENCE, pictures=pictures)
 
 
-def tracked_in_process(trial: Trial, evidence: Evidence) -> Tracked:
+def tracked_in_process(trial: Trial, evidence: Evidence, regressor: SilhouetteRegressor | None = None) -> Tracked:
     """The product's tracker over the evidence of each frame."""
     model, pose = _prepared(trial, evidence)
     spread = MEASURED if trial.body == "right" else SpreadConfig()
     config = TrackerConfig(trial.method, trial.filter_config, trial.motion, spread=spread)
-    tracker = Tracker(model, evidence.interval, config)
-    state = tracker.init(np.random.default_rng([trial.seed, 0, 1]), pose)
+    guesser = None if regressor is None else SilhouetteGuesser.of(regressor, model)
+    tracker = Tracker(model, evidence.interval, config, guesser)
+    first = {"truth": pose, "wrong": wrong_pose(model.body, evidence), "guess": None}[trial.begin]
+    state = tracker.init(np.random.default_rng([trial.seed, 0, 1]), first, observed(trial, evidence, model, 0))
     estimates, milliseconds, costs = [], [], []
     for frame in range(trial.clip.frames):
         began = time.process_time()
@@ -166,8 +170,20 @@ def observed(trial: Trial, evidence: Evidence, model: ImageLikelihood, frame: in
     rng = np.random.default_rng([trial.seed, frame, 2])
     given = evidence.true if trial.masks == "true" else evidence.own
     masks = [spoilt_mask(view[frame], trial.faults.masks, rng) for view in given]
+    if trial.gap and trial.gap[0] <= frame <= trial.gap[1]:
+        masks = [np.zeros_like(mask) for mask in masks]
     pictures = [view[frame] for view in evidence.pictures] if model.cues.need_pictures else None
     return model.observe(masks, pictures)
+
+
+def guesser_of(trial: Trial, folder: Path) -> SilhouetteRegressor | None:
+    """The trial's regressor, which the experiment has put into the folder; None where it has none."""
+    return _regressor(folder / MODELS / f"{trial.guesser}.npz") if trial.guesser else None
+
+
+@lru_cache(maxsize=4)
+def _regressor(path: Path) -> SilhouetteRegressor:
+    return load_regressor(path)
 
 
 def judged(tracked: Tracked, evidence: Evidence) -> Result:

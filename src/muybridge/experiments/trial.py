@@ -20,6 +20,7 @@ from muybridge.tracking.motion import SEARCHING, Motion, motion_of
 VERSION = 4  # raise it when a trial of the same description gives another result
 MASKS, MASK_FAULTS = ("own", "true", "job"), ("", "eroded", "dilated", "holes")
 BODIES, TORSOS = ("right", "height"), ("elliptical", "round")
+BEGINNINGS = ("truth", "guess", "wrong")
 Settings = tuple[tuple[str, Any], ...]
 
 
@@ -85,6 +86,9 @@ class Trial:
     masks : "own" (background subtraction), "true", or "job" (the whole product, from videos to a run folder)
     body : "right" (joint centres and girths of the figure) or "height" (fitted to the clip from the height alone)
     torso : "elliptical", or "round": as wide as deep
+    begin : "truth" (the true first pose), "guess" (none is given), or "wrong" (see `bodies.wrong_pose`)
+    guesser : name of a silhouette regressor in the experiment's folder; none where empty
+    gap : the first and the last frame in which nobody is seen; empty: everybody always is
     seed : of the tracker
     keep_track : leave the estimated joints on disk, for curves
     """
@@ -99,16 +103,24 @@ class Trial:
     body: str = "right"
     torso: str = "elliptical"
     faults: Faults = field(default_factory=Faults)
+    begin: str = "truth"
+    guesser: str = ""
+    gap: tuple[int, ...] = ()
     seed: int = 0
     keep_track: bool = False
 
     def __post_init__(self) -> None:
         for what, got, known in (
+            ("begin", self.begin, BEGINNINGS),
             ("masks", self.masks, MASKS),
             ("body", self.body, BODIES),
             ("torso", self.torso, TORSOS),
         ):
             _one_of(f"trial: {what}", got, known)
+        if self.begin == "guess" and not self.guesser:
+            raise InputError("trial that begins with a guess", expected="a guesser", got="none")
+        if self.gap and not (len(self.gap) == 2 and 0 < self.gap[0] <= self.gap[1]):
+            raise InputError("trial: gap", expected="first and last frame, not from the beginning", got=str(self.gap))
         if self.masks == "job" and (self.faults != Faults() or self.body != "height" or self.torso != "elliptical"):
             raise InputError("trial through a job", expected="no faults and a body by height", got=str(self.faults))
 
@@ -129,7 +141,8 @@ class Trial:
     def description(self) -> dict[str, Any]:
         """Everything that decides the result, as JSON values."""
         resolved = {"filter": asdict(self.filter_config), "motion": asdict(self.motion)}
-        return {"version": VERSION, **_plain(asdict(self)), **_plain(resolved)}
+        own = {name: value for name, value in asdict(self).items() if name not in SELDOM or value != SELDOM[name]}
+        return {"version": VERSION, **_plain(own), **_plain(resolved)}
 
     @property
     def digest(self) -> str:
@@ -143,6 +156,10 @@ class Trial:
     def with_motion(self, **settings: float) -> Trial:
         """The same with settings of the motion model replaced."""
         return replace(self, moving=tuple(sorted({**dict(self.moving), **settings}.items())))
+
+
+#: What most trials do not have is not part of their description either.
+SELDOM = {"begin": "truth", "guesser": "", "gap": ()}
 
 
 def _plain(value: Any) -> Any:

@@ -41,8 +41,7 @@ from muybridge.tracking.evidence import open_eyes
 from muybridge.tracking.pose_input import poses_from_joints
 from muybridge.tracking.prepare import reductions_of
 from muybridge.tracking.run import BODY_FILE, CAMERAS_FILE
-
-FEWEST_PIXELS = 200  # a smaller silhouette shows too little of a pose
+from muybridge.tracking.silhouette_guesser import FEWEST_PIXELS
 
 
 @dataclass(frozen=True, eq=False)
