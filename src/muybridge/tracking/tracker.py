@@ -13,13 +13,27 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
-from muybridge.filters import METHODS, CommonConfig, ConstantVelocity, Info, State, Weights, annealed, demc, guided
+from muybridge.errors import InputError
+from muybridge.filters import (
+    METHODS,
+    CommonConfig,
+    ConstantVelocity,
+    Guess,
+    Info,
+    State,
+    Weights,
+    agp_pf,
+    annealed,
+    demc,
+    guided,
+)
 from muybridge.likelihood.colour import ColourReference
 from muybridge.likelihood.observation import ImageLikelihood, Observation
+from muybridge.tracking.guessing import Guesser, placed, turned_towards
 from muybridge.tracking.motion import Motion, motion_of
 from muybridge.tracking.spread import SpreadConfig, joint_deviations, laplace
 
@@ -37,6 +51,7 @@ class TrackerConfig:
     doubtful_ratio: float = 1.6  # or this many times the run's usual cost
     patience: int = 8  # doubted or unseen frames in a row after which the person counts as lost
     spread: SpreadConfig = SpreadConfig()
+    guess: Literal["always", "troubled"] | None = None  # when a pose is guessed; None: always for agp-pf alone
     trust: float = 0.05  # added to a camera's usual cost before weights are taken as its inverse
 
 
@@ -99,6 +114,7 @@ class Tracker:
     model: ImageLikelihood
     interval: float  # seconds
     config: TrackerConfig = TrackerConfig()
+    guesser: Guesser | None = None  # finds who is lost, and the first pose
 
     @cached_property
     def dynamics(self) -> ConstantVelocity:
@@ -128,12 +144,24 @@ class Tracker:
         blocks = self.model.body.blocks
         return tuple(tuple(blocks[name].tolist()) for name in sorted(blocks, key=lambda name: name != "root"))
 
-    def init(self, rng: np.random.Generator, pose: np.ndarray) -> TrackState:
-        """A state that believes in one pose (D,)."""
-        method = METHODS[self.config.method]
-        sd = self.dynamics.noise_sd
-        state = method.init(rng, pose, sd, self.filter_config, self.dynamics.lower, self.dynamics.upper)
-        return TrackState(state, np.full(len(self.model.rig), np.nan))
+    def init(
+        self, rng: np.random.Generator, pose: np.ndarray | None = None, observation: Observation | None = None
+    ) -> TrackState:
+        """A state that believes in one pose (D,), or in what is guessed from the first frame's evidence."""
+        known = np.full(len(self.model.rig), np.nan)
+        common = self.dynamics.noise_sd, self.filter_config, self.dynamics.lower, self.dynamics.upper
+        if pose is not None:
+            return TrackState(METHODS[self.config.method].init(rng, pose, *common), known)
+        guess = None if observation is None else self._made(observation)
+        if observation is None or guess is None:
+            raise InputError("first pose", expected="a pose, or a frame of which one can be guessed", got="neither")
+        rest = np.clip(np.zeros(len(self.model.body.dof_names)), self.dynamics.lower, self.dynamics.upper)
+        guess = placed(guess, observation, rest)
+        if isinstance(self.filter_config, agp_pf.Config):
+            return TrackState(agp_pf.begin(rng, guess, rest, *common), known)
+        poses = np.clip(guess.poses(rest), self.dynamics.lower, self.dynamics.upper)
+        best = poses[int(np.argmin(observation.costs(poses).mean(axis=1)))]
+        return TrackState(METHODS[self.config.method].init(rng, best, *common), known)
 
     def restore(self, arrays: dict[str, np.ndarray]) -> TrackState:
         """The state that `TrackState.to_arrays` saved."""
@@ -165,7 +193,8 @@ class Tracker:
         if not seeing.any():
             return self._unseen(state)
         reference = self._reference(state, observation)
-        observation = replace(observation, model=self.weighted(state, seeing), reference=reference)
+        guess = self._guess(state, observation)
+        observation = replace(observation, model=self.weighted(state, seeing), reference=reference, guess=guess)
         method = METHODS[self.config.method]
         following, info = method.step(rng, state.filter, observation, self.dynamics, self.filter_config)
         if info.collapsed:
@@ -190,6 +219,22 @@ class Tracker:
         else:
             covariance, left = laplace(observation, pose, self.dynamics, spread)
         return joint_deviations(pose, covariance, left, self.model.body, spread)
+
+    def _guess(self, state: TrackState, observation: Observation) -> Guess | None:
+        """What the filter may ask for; with the place from the masks where the person's is not known."""
+        troubled = state.troubled > 0 or state.seen == 0
+        when = self.config.guess or ("always" if self.config.method == "agp-pf" else "troubled")
+        guess = self._made(observation) if troubled or when == "always" else None
+        if guess is None:
+            return None
+        guess = turned_towards(guess, state.filter.estimate, self.model.body)
+        return placed(guess, observation, state.filter.estimate) if troubled else guess
+
+    def _made(self, observation: Observation) -> Guess | None:
+        """The guess that the evidence carries, else one made of its masks."""
+        if observation.guess is not None or self.guesser is None:
+            return observation.guess
+        return self.guesser.guess(observation.masks)
 
     def _reference(self, state: TrackState, observation: Observation) -> ColourReference | None:
         """What the segments look like: as known, else as at the first pose; None where colour does not count."""
