@@ -28,6 +28,8 @@ def result(error: float = 20.0, frames: int = 4, **changed: object) -> Result:
         "sd_mm": 12.0,
         "evaluations": 1000.0,
         "ms": 10.0,
+        "cost": 0.1,
+        "moves": 2.0,
         "status": "tracked",
         "frame_mm": (error,) * frames,
     }

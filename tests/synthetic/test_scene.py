@@ -17,7 +17,7 @@ from muybridge.synthetic.occluders import Occluder
 from muybridge.synthetic.outfits import OUTFITS, Garment
 from muybridge.synthetic.rigs import looking_at
 from muybridge.synthetic.room import Room, picture, relit
-from muybridge.synthetic.scene import demo_scene, empty, render, shoot, truth
+from muybridge.synthetic.scene import demo_scene, empty, render, shoot, silhouettes, truth
 from muybridge.synthetic.sensor import Sensor
 from muybridge.synthetic.stage import stage
 
@@ -55,6 +55,18 @@ class TestRender:
         images, masks = render(SCENE, 0)
         assert [image.shape for image in images] == [(120, 160, 3)] * 3 and images[0].dtype == np.uint8
         assert [mask.shape for mask in masks] == [(120, 160)] * 3 and masks[0].dtype == bool
+
+    def test_silhouettes_are_its_masks(self):
+        """The same layers laid over nothing: to the pixel, with a thing in the way too."""
+        centre = truth(SCENE).joints[7].mean(axis=0)
+        towards = SCENE.rig[0].position[:2] - centre[:2]
+        place = centre[:2] + 0.8 * towards / np.linalg.norm(towards)
+        hidden = replace(SCENE, occluders=(Occluder("box", (float(place[0]), float(place[1])), (0.4, 0.4, 0.7)),))
+        for scene in (SCENE, hidden):
+            for one, other in zip(silhouettes(scene, 7), render(scene, 7)[1], strict=True):
+                assert one.dtype == bool and one.any()
+                np.testing.assert_array_equal(one, other)
+        assert silhouettes(hidden, 7)[0].sum() < 0.9 * silhouettes(SCENE, 7)[0].sum(), "the box hides nothing"
 
     def test_order_does_not_matter(self):
         first = render(SCENE, 7)[0]

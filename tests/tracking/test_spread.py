@@ -8,10 +8,11 @@ import numpy as np
 import pytest
 
 from muybridge.body import Body, Landmark, Rotation, Segment, Shape
+from muybridge.filters.dynamics import WIDEST
 from muybridge.likelihood.observation import ImageLikelihood
 from muybridge.tracking import Tracker, TrackerConfig
 from muybridge.tracking.motion import Motion
-from muybridge.tracking.spread import STEP, SpreadConfig, joint_deviations, joint_slopes, laplace
+from muybridge.tracking.spread import STEP, SpreadConfig, carried, joint_deviations, joint_slopes, laplace
 from tracking.made import INTERVAL, PIXEL, errors, exact_masks, likelihood, ring, walking
 
 FRAMES = 6
@@ -39,10 +40,10 @@ class TestDeviations:
     """Slopes of places are 1 but for rounding of 1 / STEP times 1e-16 metres: 1e-12."""
 
     def test_a_point_in_closed_form(self) -> None:
-        """Mean variance over the axes, the square of the widening; the step left; the body: sums of squares."""
+        """Mean variance over the axes, the square of the widening; three times the step left; the body."""
         covariance = np.diag([0.01, 0.02, 0.03]) ** 2
-        left, config = np.array([0.003, 0.0, 0.004]), SpreadConfig(widening=2.0, body_sd=0.006)
-        own, missed = 4 * (1e-4 + 4e-4 + 9e-4) / 3, 25e-6 / 3
+        left, config = np.array([0.003, 0.0, 0.004]), SpreadConfig(widening=2.0, body_sd=0.006, falling_short=3.0)
+        own, missed = 4 * (1e-4 + 4e-4 + 9e-4) / 3, 9 * 25e-6 / 3
         found = joint_deviations(np.array([1.0, 2.0, 3.0]), covariance, left, point(), config)
         np.testing.assert_allclose(found, [np.sqrt(own + missed + 36e-6)], rtol=1e-9)
 
@@ -101,7 +102,8 @@ class TestLaplace:
         pose = poses[self.FRAME].copy()
         pose[:3] += away
         dynamics = Motion().dynamics(model.body, INTERVAL)
-        covariance, step = laplace(model.observe(masks[self.FRAME]), pose, dynamics, SpreadConfig())
+        known = np.diag(dynamics.noise_sd**2)
+        covariance, step = laplace(model.observe(masks[self.FRAME]), pose, known, dynamics, SpreadConfig())
         return pose, covariance, step, model.body
 
     def test_a_covariance_no_wider_than_the_motion(self, clip) -> None:
@@ -135,9 +137,36 @@ class TestLaplace:
         sd = [joint_deviations(*each, SpreadConfig()) for each in (arrived, stopped)]
         assert (sd[1] > sd[0]).all()
         missed = np.linalg.norm(joint_slopes(stopped[3], stopped[0]) @ stopped[2], axis=1) / np.sqrt(3)
-        assert (sd[1] > missed).all() and np.mean(missed) > 0.25 * OFF / np.sqrt(3)
+        assert (sd[1] > 2 * missed).all() and np.mean(missed) > 0.25 * OFF / np.sqrt(3)
         without = joint_deviations(stopped[0], stopped[1], np.zeros_like(stopped[2]), stopped[3], SpreadConfig())
         assert (without < sd[1]).all() and np.abs(without - sd[0]).mean() < np.mean(sd[1] - sd[0])
+
+
+class TestCarried:
+    def test_grows_by_the_noise_up_to_what_is_usual(self) -> None:
+        """Variances add up, P + Q, until P is as wide as people mostly are: then min(P, usual^2) + Q for ever."""
+        body, _ = walking(FRAMES)
+        dynamics = Motion().dynamics(body, INTERVAL)
+        noise, widest = dynamics.noise_sd**2, np.minimum(body.usual[1], WIDEST) ** 2
+        covariance, variance = np.zeros((noise.size, noise.size)), np.zeros(noise.size)
+        for _ in range(500):
+            covariance = carried(covariance, dynamics, body)
+            variance = np.minimum(variance, widest) + noise
+            np.testing.assert_allclose(np.diag(covariance), variance, rtol=1e-12)
+        elbow = body.dof_names.index("left_elbow_flexion")
+        assert variance[elbow] == widest[elbow] + noise[elbow]
+
+    def test_what_hangs_together_stays_so(self) -> None:
+        """A correlation of 0.9 stays that of a matrix: no eigenvalue below zero, though one component was narrowed."""
+        body, _ = walking(FRAMES)
+        dynamics = Motion().dynamics(body, INTERVAL)
+        size = len(body.dof_names)
+        covariance = 0.9 * np.ones((size, size)) * 4.0**2 + 0.1 * np.eye(size) * 4.0**2
+        found = carried(covariance, dynamics, body)
+        widest = np.minimum(body.usual[1], WIDEST)
+        np.testing.assert_allclose(found - np.diag(np.diag(found)),
+                                   (0.9 * np.outer(widest, widest)) * (1 - np.eye(size)), rtol=1e-12)  # fmt: skip
+        assert np.linalg.eigvalsh(found).min() > 0
 
 
 @pytest.mark.parametrize(("method", "least"), [("guided", 0.95), ("annealed", 0.75), ("demc", 0.75)])

@@ -15,6 +15,7 @@ import pytest
 
 from muybridge.tracking import Estimate, Tracker, TrackerConfig, TrackState
 from muybridge.tracking.motion import Motion
+from muybridge.tracking.tracker import LIMBS_COAST, ROOT_COAST
 from tracking.made import INTERVAL, PIXEL, empty_masks, errors, exact_masks, likelihood, ring, walking
 
 FRAMES = 20
@@ -109,12 +110,27 @@ class TestUnseen:
         assert gone == ["unseen"] * 8 + ["lost"] * 4
         assert {e.status for e in estimates[: GONE.start]} == {"tracked"}
 
-    def test_stays_where_last_seen_and_less_sure(self, estimates: list[Estimate]) -> None:
+    def test_goes_on_as_last_seen_and_is_less_sure(self, clip, estimates: list[Estimate]) -> None:
+        """The place by v (a + a^2 + ...) with a = exp(-interval / 1 s) after each frame; angles fade sooner."""
+        body = clip[0]
         gone = [estimates[frame] for frame in GONE]
-        assert all(np.array_equal(e.pose, estimates[GONE.start - 1].pose) for e in gone)
+        steps = np.diff([estimates[GONE.start - 1].pose] + [e.pose for e in gone], axis=0)
+        free = (gone[-1].pose > body.lower) & (gone[-1].pose < body.upper)
+        for components, seconds in ((np.arange(3), ROOT_COAST), (np.flatnonzero(free[3:]) + 3, LIMBS_COAST)):
+            fading = np.exp(-INTERVAL / seconds)
+            np.testing.assert_allclose(steps[1:, components], fading * steps[:-1, components], atol=1e-12)
+        assert np.linalg.norm(steps[0][:3]) > 0.005, "the walker walks"
         sd = np.array([e.joint_sd for e in gone])
         assert (np.diff(sd, axis=0) > 0).all() and (sd[0] > estimates[GONE.start - 1].joint_sd).all()
         assert all(np.isnan(e.costs).all() and e.evaluations == 0 for e in gone)
+
+    def test_nearer_than_standing_still(self, clip, estimates: list[Estimate]) -> None:
+        """In the last unseen frame: a third nearer or more, for a walker who walks on."""
+        body, poses = clip[:2]
+        last = GONE.stop - 1
+        coasted = errors(body, estimates[last].pose, poses[last])[TRUNK].mean()
+        stood = errors(body, estimates[GONE.start - 1].pose, poses[last])[TRUNK].mean()
+        assert coasted < 2 / 3 * stood
 
     def test_found_again(self, clip, estimates: list[Estimate]) -> None:
         """0.12 m later, within reach of the contour; the legs passed each other, and which is which is not known."""

@@ -19,6 +19,7 @@ COMMANDS = {
     "job": ("job:job", "Write a job for a folder in a known layout."),
     "sample": ("sample:sample", "Get a real recording to try things on."),
     "synth": ("synth:synth", "Render a scene with known truth, for track."),
+    "train": ("train:train", "Learn to guess poses from silhouettes, for filters that need no first pose."),
     "evaluate": ("evaluate:evaluate", "Compare a run with the truth: error per joint in mm."),
     "report": ("report:report", "Write a run's report and plots into its folder."),
     "experiment": ("experiment:experiment", "Run a paper's experiments on scenes with known truth."),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -21,6 +21,7 @@ from muybridge.experiments.trial import Clip, Faults, Trial
 from muybridge.io.disk import make_folder
 from muybridge.io.run_folder import JointSeries, write_joints
 from muybridge.likelihood.observation import ImageLikelihood, Observation
+from muybridge.tracking.spread import MEASURED, SpreadConfig
 from muybridge.tracking.tracker import Tracker, TrackerConfig
 
 EVIDENCE, TRACKS, SCENES = "evidence", "tracks", "scenes"  # folders of an experiment
@@ -55,6 +56,10 @@ class Result:
         The median stated deviation.
     evaluations, ms : float
         Of the likelihood, and processor time, a frame.
+    cost : float
+        Two-sided silhouette cost of the estimates, all cameras alike; NaN through a job.
+    moves : float
+        Accepted moves a chain and frame; NaN for filters without, and through a job.
     status : str
         Of the last frame.
     frame_mm : (T,) float
@@ -75,6 +80,8 @@ class Result:
     sd_mm: float
     evaluations: float
     ms: float
+    cost: float
+    moves: float
     status: str
     frame_mm: tuple[float, ...]
 
@@ -94,12 +101,17 @@ def _known(value: Any) -> Any:
 
 @dataclass(frozen=True, eq=False)
 class Tracked:
-    """A track and what it cost: joints with deviations, then per-frame evaluations and milliseconds, and the end."""
+    """A track and what it cost: joints with deviations, what was counted in each frame, and the end.
+
+    costs, moves : (T,) see `Result`; empty through a job
+    """
 
     series: JointSeries
     evaluations: np.ndarray
     milliseconds: np.ndarray
     status: str
+    costs: np.ndarray = field(default_factory=lambda: np.zeros(0))
+    moves: np.ndarray = field(default_factory=lambda: np.zeros(0))
 
 
 def run_trial(trial: Trial, folder: Path) -> Result:
@@ -124,15 +136,18 @@ def _evidence(clip: Clip, folder: Path, pictures: bool) -> Evidence:
 def tracked_in_process(trial: Trial, evidence: Evidence) -> Tracked:
     """The product's tracker over the evidence of each frame."""
     model, pose = _prepared(trial, evidence)
-    tracker = Tracker(model, evidence.interval, TrackerConfig(trial.method, trial.filter_config, trial.motion))
+    spread = MEASURED if trial.body == "right" else SpreadConfig()
+    config = TrackerConfig(trial.method, trial.filter_config, trial.motion, spread=spread)
+    tracker = Tracker(model, evidence.interval, config)
     state = tracker.init(np.random.default_rng([trial.seed, 0, 1]), pose)
-    estimates, milliseconds = [], []
+    estimates, milliseconds, costs = [], [], []
     for frame in range(trial.clip.frames):
         began = time.process_time()
         observation = observed(trial, evidence, model, frame)
         state, estimate = tracker.step_observed(np.random.default_rng([trial.seed, frame, 0]), state, observation)
         milliseconds.append(1e3 * (time.process_time() - began))
         estimates.append(estimate)
+        costs.append(float(estimate.costs.mean()))
     frames = np.arange(len(estimates))
     series = JointSeries(
         model.body.joint_names,
@@ -142,7 +157,8 @@ def tracked_in_process(trial: Trial, evidence: Evidence) -> Tracked:
         np.array([estimate.joint_sd for estimate in estimates]),
     )
     evaluations = np.array([estimate.evaluations for estimate in estimates], float)
-    return Tracked(series, evaluations, np.array(milliseconds), estimates[-1].status)
+    moves = np.array([float(e.info.acceptance.sum()) if e.info is not None else np.nan for e in estimates])
+    return Tracked(series, evaluations, np.array(milliseconds), estimates[-1].status, np.array(costs), moves)
 
 
 def observed(trial: Trial, evidence: Evidence, model: ImageLikelihood, frame: int) -> Observation:
@@ -176,9 +192,17 @@ def judged(tracked: Tracked, evidence: Evidence) -> Result:
         sd_mm=1000.0 * float(np.median(tracked.series.sd)),
         evaluations=float(tracked.evaluations.mean()),
         ms=float(np.median(tracked.milliseconds)),
+        cost=_mean(tracked.costs),
+        moves=_mean(tracked.moves),
         status=tracked.status,
         frame_mm=tuple(round(float(value), 2) for value in free.frame_means_mm),
     )
+
+
+def _mean(values: np.ndarray) -> float:
+    """Mean of what is known; NaN where nothing is."""
+    known = values[np.isfinite(values)]
+    return float(known.mean()) if known.size else float("nan")
 
 
 def _mean_of(errors: JointErrors, names: tuple[str, ...]) -> float:

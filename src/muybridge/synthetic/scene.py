@@ -118,6 +118,22 @@ def shoot(scene: Scene, frame: int, *, visibility: bool = False) -> tuple[Shot, 
     return tuple(shots)
 
 
+def silhouettes(scene: Scene, frame: int) -> tuple[np.ndarray, ...]:
+    """One (H, W) bool a camera: the person is seen in at least half of the pixel in the middle of the exposure.
+
+    The masks of `render` for a shutter that is not open, without the pictures and in a fraction of the time.
+    """
+    made = stage(scene)
+    state = scene.light.state(frame / scene.rate)
+    now = [actor.mesh(frame) for actor in made.actors]
+    masks = []
+    for index, camera in enumerate(scene.rig):
+        layers = [*_drawn(camera, made, now, scene.light.lamps[state]), *made.decors[state].things[index]]
+        width, height = camera.size
+        masks.append(lay_over(np.zeros((height, width, 3), dtype=np.float32), layers) >= 0.5)
+    return tuple(masks)
+
+
 def empty(scene: Scene, count: int = 1) -> Iterator[tuple[np.ndarray, ...]]:
     """`count` frames of the scene without people, as the cameras see them just before the clip, the latest first."""
     made = stage(scene)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import tomllib
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -13,9 +14,12 @@ from muybridge.datasets.bodytrack import read_poses
 from muybridge.errors import InputError
 from muybridge.io.job import Job
 from muybridge.io.run_folder import read_pose
+from muybridge.tracking.spread import joint_slopes
 
 JOINT_SD, TURN_SD = 0.02, 1.0  # metres, radians: how closely joints are met, how freely angles move
 HEADINGS = 8
+STEPS, SETTLED = 30, 1e-4  # Gauss-Newton steps a frame at most, and the change (metres, radians) that ends them
+LARGEST_TURN = 0.3  # radians a step
 
 
 def first_pose(job: Job, body: Body, frame: int) -> np.ndarray | None:
@@ -106,3 +110,40 @@ def pose_from_joints(body: Body, joints: dict[str, np.ndarray]) -> np.ndarray:
             best = found
     assert best is not None
     return np.clip(best.x, body.lower, body.upper)
+
+
+def poses_from_joints(body: Body, names: Sequence[str], joints: np.ndarray) -> np.ndarray:
+    """(T, D) the poses whose joints come nearest to (T, J, 3), metres, world; NaN for a joint that is not known.
+
+    What joints do not tell, such as the twist of a straight arm, is as the body mostly has it: a pose depends on its
+    own joints and on nothing before, but for the side from which a turn that may be made both ways is reached.
+    """
+    columns = [j for j, name in enumerate(names) if name in body.joint_names]
+    index = np.array([body.joint_names.index(names[j]) for j in columns])
+    known = {names[j]: joints[0, j] for j in columns if np.isfinite(joints[0, j]).all()}
+    pose = pose_from_joints(body, known)
+    poses = []
+    for target in joints[:, columns]:
+        pose = _followed(body, pose, index, target)
+        poses.append(pose)
+    return np.array(poses)
+
+
+def _followed(body: Body, pose: np.ndarray, index: np.ndarray, target: np.ndarray) -> np.ndarray:
+    """Gauss-Newton from a pose (D,) to the one whose joints `index` are nearest to a target (B, 3)."""
+    seen = np.isfinite(target).all(axis=1)
+    index, target = index[seen], target[seen]
+    mean, sd = body.usual
+    usual = np.diag(1.0 / np.minimum(sd, 1e3) ** 2)
+    for _ in range(STEPS):
+        slopes = joint_slopes(body, pose)[index].reshape(-1, pose.size) / JOINT_SD
+        away = ((target - body.joints(pose)[index]) / JOINT_SD).ravel()
+        pull = slopes.T @ away + usual @ (mean - pose)
+        step = np.linalg.solve(slopes.T @ slopes + usual, pull)
+        step *= min(1.0, LARGEST_TURN / max(float(np.abs(step).max()), 1e-12))
+        moved = np.clip(pose + step, body.lower, body.upper)
+        settled = float(np.abs(moved - pose).max()) < SETTLED
+        pose = moved
+        if settled:
+            break
+    return pose

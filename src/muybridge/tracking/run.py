@@ -35,6 +35,7 @@ from muybridge.tracking.diagnostics import DiagnosticsWriter
 from muybridge.tracking.evidence import Eyes, open_eyes
 from muybridge.tracking.motion import Motion, motion_of
 from muybridge.tracking.prepare import Preparation, body_of_job, prepare, reductions_of, rig_of_job
+from muybridge.tracking.spread import MEASURED, SpreadConfig
 from muybridge.tracking.tracker import LOST, TRACKED, Estimate, Tracker, TrackerConfig, TrackState
 
 CHECKPOINT_EVERY = 25  # frames
@@ -125,7 +126,8 @@ class _Run:
         body, rig = read_body(self.out / BODY_FILE), read_rig(self.out / CAMERAS_FILE)
         eyes.eyes = [replace(eye, camera=rig[eye.camera.name]) for eye in eyes.eyes]
         rig = Rig(tuple(rig[eye.camera.name] for eye in eyes.eyes))
-        config = TrackerConfig(self.job.filter.name, filter_config(self.job), self._motion())
+        spread = SpreadConfig() if self.job.body.fit else MEASURED
+        config = TrackerConfig(self.job.filter.name, filter_config(self.job), self._motion(), spread=spread)
         return Tracker(ImageLikelihood(body, rig, eyes.reductions, cues=self.cues), self._interval(eyes), config)
 
     def _motion(self) -> Motion:
@@ -152,7 +154,7 @@ class _Run:
                 for record in kept:
                     log.append(**{name: record[name] for name in record.dtype.names})
                 for index, seconds, images, began in self._frames(eyes, start):
-                    masks = eyes.masks(images, tracker.predict(state))
+                    masks = eyes.masks(images, tracker.expected(state))
                     state, estimate = tracker.step(self._rng(index, 0), state, masks, eyes.pictures(images))
                     elapsed = (time.perf_counter() - began) * 1e3
                     record = _record(index, seconds, estimate, elapsed)

@@ -35,7 +35,7 @@ from muybridge.likelihood.colour import ColourReference
 from muybridge.likelihood.observation import ImageLikelihood, Observation
 from muybridge.tracking.guessing import Guesser, placed, turned_towards
 from muybridge.tracking.motion import Motion, motion_of
-from muybridge.tracking.spread import SpreadConfig, joint_deviations, laplace
+from muybridge.tracking.spread import SpreadConfig, carried, joint_deviations, laplace
 
 TRACKED, DOUBTFUL, UNSEEN, LOST = "tracked", "doubtful", "unseen", "lost"
 
@@ -60,11 +60,13 @@ class TrackState:
     """What the next frame needs.
 
     usual_costs : (C,) running mean of each camera's cost; troubled : bad frames in a row; seen : good frames
+    covariance : (D, D) of the pose, whatever the filter
     reference : what the segments look like, where colour counts and a frame was seen
     """
 
     filter: State
     usual_costs: np.ndarray
+    covariance: np.ndarray
     troubled: int = 0
     seen: int = 0
     reference: ColourReference | None = None
@@ -76,6 +78,7 @@ class TrackState:
             arrays |= {"colour_histograms": self.reference.histograms, "colour_known": self.reference.known}
         return arrays | {
             "usual_costs": self.usual_costs,
+            "covariance": self.covariance,
             "troubled": np.array(self.troubled),
             "seen": np.array(self.seen),
         }
@@ -148,20 +151,26 @@ class Tracker:
         self, rng: np.random.Generator, pose: np.ndarray | None = None, observation: Observation | None = None
     ) -> TrackState:
         """A state that believes in one pose (D,), or in what is guessed from the first frame's evidence."""
-        known = np.full(len(self.model.rig), np.nan)
-        common = self.dynamics.noise_sd, self.filter_config, self.dynamics.lower, self.dynamics.upper
-        if pose is not None:
-            return TrackState(METHODS[self.config.method].init(rng, pose, *common), known)
+        sd = self.dynamics.noise_sd
+        common = sd, self.filter_config, self.dynamics.lower, self.dynamics.upper
+        if pose is None:
+            guess, rest = self._first_guess(observation)
+            if isinstance(self.filter_config, agp_pf.Config):
+                return self._started(agp_pf.begin(rng, guess, rest, *common))
+            poses = np.clip(guess.poses(rest), self.dynamics.lower, self.dynamics.upper)
+            pose = poses[int(np.argmin(observation.costs(poses).mean(axis=1)))]
+        return self._started(METHODS[self.config.method].init(rng, pose, *common))
+
+    def _started(self, state: State) -> TrackState:
+        return TrackState(state, np.full(len(self.model.rig), np.nan), np.diag(np.square(self.dynamics.noise_sd)))
+
+    def _first_guess(self, observation: Observation | None) -> tuple[Guess, np.ndarray]:
+        """A guess with the place in it, and a pose (D,) for what it does not speak of."""
         guess = None if observation is None else self._made(observation)
         if observation is None or guess is None:
             raise InputError("first pose", expected="a pose, or a frame of which one can be guessed", got="neither")
         rest = np.clip(np.zeros(len(self.model.body.dof_names)), self.dynamics.lower, self.dynamics.upper)
-        guess = placed(guess, observation, rest)
-        if isinstance(self.filter_config, agp_pf.Config):
-            return TrackState(agp_pf.begin(rng, guess, rest, *common), known)
-        poses = np.clip(guess.poses(rest), self.dynamics.lower, self.dynamics.upper)
-        best = poses[int(np.argmin(observation.costs(poses).mean(axis=1)))]
-        return TrackState(METHODS[self.config.method].init(rng, best, *common), known)
+        return placed(guess, observation, rest), rest
 
     def restore(self, arrays: dict[str, np.ndarray]) -> TrackState:
         """The state that `TrackState.to_arrays` saved."""
@@ -169,11 +178,17 @@ class Tracker:
         own = {name.removeprefix("filter_"): value for name, value in arrays.items() if name.startswith("filter_")}
         seen = "colour_histograms" in arrays
         reference = ColourReference(arrays["colour_histograms"], arrays["colour_known"]) if seen else None
-        return TrackState(kind(**own), arrays["usual_costs"], int(arrays["troubled"]), int(arrays["seen"]), reference)
+        counts = int(arrays["troubled"]), int(arrays["seen"])
+        return TrackState(kind(**own), arrays["usual_costs"], arrays["covariance"], *counts, reference)
 
     def predict(self, state: TrackState) -> np.ndarray:
         """(J, 3) metres: where the joints are expected in the next frame."""
         return self.model.body.joints(self._predicted(state))
+
+    def expected(self, state: TrackState) -> np.ndarray | None:
+        """(J, 3) metres as `predict`; None, anywhere, for a person who is lost and can be found by a guess."""
+        anywhere = self.guesser is not None and state.troubled > self.config.patience
+        return None if anywhere else self.predict(state)
 
     def step(
         self,
@@ -207,18 +222,20 @@ class Tracker:
         if reference is not None and not doubted:
             reference = observation.updated_reference(following.estimate)
         body = self.model.body
-        sd = self._deviations(following, observation)
+        covariance, left = self._posterior(following, state.covariance, observation)
+        sd = joint_deviations(following.estimate, covariance, left, body, self.config.spread)
         estimate = Estimate(following.estimate, body.joints(following.estimate), sd, costs, status, info)
-        return TrackState(following, usual, troubled, state.seen + (not doubted), reference), estimate
+        return TrackState(following, usual, covariance, troubled, state.seen + (not doubted), reference), estimate
 
-    def _deviations(self, state: State, observation: Observation) -> np.ndarray:
-        """(J,) metres; the guided filter knows the posterior's width, for the others it is worked out."""
-        pose, spread = state.estimate, self.config.spread
+    def _posterior(self, state: State, before: np.ndarray, observation: Observation) -> tuple[np.ndarray, np.ndarray]:
+        """Covariance (D, D) and the step to the mode; the guided filter knows them, for the others they are worked out.
+
+        before : (D, D) covariance after the frame before.
+        """
         if isinstance(state, guided.State):
-            covariance, left = state.covariance, np.zeros_like(pose)
-        else:
-            covariance, left = laplace(observation, pose, self.dynamics, spread)
-        return joint_deviations(pose, covariance, left, self.model.body, spread)
+            return state.covariance, np.zeros_like(state.estimate)
+        known = carried(before, self.dynamics, self.model.body)
+        return laplace(observation, state.estimate, known, self.dynamics, self.config.spread)
 
     def _guess(self, state: TrackState, observation: Observation) -> Guess | None:
         """What the filter may ask for; with the place from the masks where the person's is not known."""
@@ -260,21 +277,38 @@ class Tracker:
         return float(costs.mean()) > ceiling
 
     def _unseen(self, state: TrackState, info: Info | None = None) -> tuple[TrackState, Estimate]:
-        """No evidence: stay where the person was last seen, and be less sure with every frame."""
+        """No evidence: move on for a while as last seen, and be less sure with every frame."""
         troubled = state.troubled + 1
-        pose = state.filter.estimate
-        standing = replace(state.filter, velocity=np.zeros_like(pose))
-        body = self.model.body
+        coasting = self._coasted(state.filter)
+        pose, body = coasting.estimate, self.model.body
         joints = body.joints(pose)
-        known = _particles_sd(body.joints(state.filter.particles), Weights(state.filter.log_weights))
+        known = _particles_sd(body.joints(coasting.particles), Weights(coasting.log_weights))
         drift = UNSEEN_SPEED * self.interval * np.sqrt(troubled) * 2.0
         status = LOST if troubled > self.config.patience else UNSEEN
         costs = np.full(len(self.model.rig), np.nan)
         estimate = Estimate(pose, joints, np.hypot(known, drift), costs, status, info)
-        return replace(state, filter=standing, troubled=troubled), estimate
+        covariance = carried(state.covariance, self.dynamics, body)
+        return replace(state, filter=coasting, covariance=covariance, troubled=troubled), estimate
+
+    def _coasted(self, state: State) -> State:
+        """A frame later without a picture: velocities fade, soon of limbs, which swing back, later of the place."""
+        fading = np.full_like(state.velocity, LIMBS_COAST)
+        fading[:ROOT_COMPONENTS] = ROOT_COAST
+        velocity = state.velocity * np.exp(-self.interval / fading)
+        if isinstance(state, guided.State):
+            ahead = self.dynamics.carry(replace(state.belief, velocity=velocity))
+            step = ahead.mean - state.estimate
+            state = replace(state, covariance=ahead.covariance, cross=ahead.cross,
+                            velocity_covariance=ahead.velocity_covariance)  # fmt: skip
+        else:
+            step = np.clip(state.estimate + velocity, self.dynamics.lower, self.dynamics.upper) - state.estimate
+        particles = np.clip(state.particles + step, self.dynamics.lower, self.dynamics.upper)
+        return replace(state, particles=particles, estimate=state.estimate + step, velocity=step)
 
 
 UNSEEN_SPEED = 1.25  # metres a second that a person who is not seen may have moved, one standard deviation
+ROOT_COAST, LIMBS_COAST = 1.0, 0.2  # seconds after which a velocity that is not seen has fallen to 1 / e
+ROOT_COMPONENTS = 3  # of the pose: the root's place
 MINIMUM_AREA = 20  # reduced pixels; a mask with fewer shows nobody
 
 

@@ -60,8 +60,8 @@ TARGETS = {
 
 
 def target_cases(scale: Scale) -> Iterator[Case]:
-    """The lines of `TARGETS`, at the reduction that the tracker would choose."""
-    ring, side = scale.clips(reduction=None), scale.walks(view="side", reduction=None)
+    """The lines of `TARGETS`: the first through the whole product, at the reduction it chooses; the others are E1's."""
+    ring, side = scale.clips(), scale.walks(view="side")
     trials: tuple[tuple[tuple, Trial], ...] = (
         (ring, Trial(ring[0], masks="job", body="height")),
         (ring, at_shape("demc", ring[0])),

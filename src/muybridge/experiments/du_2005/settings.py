@@ -1,18 +1,19 @@
-"""E2 (layers), and one setting of DE-MC at a time: readings of sigma, crossover, estimate, velocity, torso."""
+"""E2 (layers), one setting of DE-MC at a time (readings of sigma, crossover, estimate, velocity, torso), its search."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
 
-from muybridge.experiments.du_2005.budgets import VIEWS, interval_figure
-from muybridge.experiments.du_2005.conditions import at_shape, over, printed, working
-from muybridge.experiments.experiment import LOST_MM, Case, Outcome, Part, Report, Scale
+from muybridge.experiments.du_2005.budgets import REFERENCE, VIEWS, interval_figure
+from muybridge.experiments.du_2005.conditions import at_budget, at_shape, over, printed, working
+from muybridge.experiments.experiment import LOST_MM, Case, Outcome, Part, Report, Row, Scale
 from muybridge.experiments.statistics import over_seeds
-from muybridge.experiments.summaries import SUMMARY_NOTES, difference_table, summary_table, values
+from muybridge.experiments.summaries import SUMMARY_NOTES, difference_table, error, summary_table, values
 from muybridge.experiments.tables import Column, Table
+from muybridge.experiments.trial import Clip, Trial
 from muybridge.plotting.experiments import plot_error_curves
 from muybridge.plotting.style import new_figure
 
@@ -107,5 +108,61 @@ def sigma_as_printed(scale: Scale) -> Iterator[Case]:
         yield from over(clips, f"printed, sigma {adaptation}", printed("demc", clips[0], adaptation=adaptation))
 
 
+SEARCH_SEEDS = 5
+
+
+def search_conditions(clip: Clip) -> dict[str, Trial]:
+    """DE-MC beside annealing, one difference at a time: why is it not below?"""
+    return {
+        REFERENCE: at_shape("demc", clip),
+        "no selection between layers": at_shape("demc", clip, reselect=None),
+        "no differences, lambda 0": at_shape("demc", clip, difference_scale=0.0),
+        "limb by limb": at_shape("demc", clip, by_limb=True),
+        "500 x 9, annealing's evaluations": at_shape("demc", clip, layers=9),
+        "500 x 19": at_shape("demc", clip, layers=19),
+        "500 x 39": at_shape("demc", clip, layers=39),
+        "long chains, 60 x 57": at_budget("demc", clip, 3500),
+        "annealed 500 x 8, DE-MC's evaluations": at_shape("annealed", clip, layers=8),
+        "annealed 500 x 10": at_shape("annealed", clip),
+        "guided (default)": working("guided", clip),
+    }
+
+
+def search_cases(scale: Scale) -> Iterator[Case]:
+    """Walks, both views."""
+    for view in VIEWS:
+        clips = scale.walks(view=view, seeds=scale.few(SEARCH_SEEDS))
+        for label, trial in search_conditions(clips[0]).items():
+            yield from over(clips, label, trial)
+
+
+def search_report(outcome: Outcome) -> Report:
+    """How far each search climbs, and by how many moves; and its error."""
+    columns = (Column("condition"), Column("cost of the estimate", 4), Column("accepted moves a chain", 1),
+               Column("error mm"), Column("evaluations", 0), Column("runs", 0))  # fmt: skip
+    notes = (
+        "Cost: of the estimates' silhouettes, two-sided, between 0 and 1; lower is nearer to the mode.",
+        SUMMARY_NOTES[0],
+    )
+    tables = []
+    for view, seen in VIEWS.items():
+        groups = outcome.groups(outcome.of_view(view))
+        rows = tuple(
+            (label, over_seeds(values(found, lambda row: row.result.cost)), mean_moves(found), error(found),
+             float(np.mean([row.result.evaluations for row in found])), len(found))
+            for label, found in groups.items()
+        )  # fmt: skip
+        tables.append(Table(f"search-{view}", f"Why DE-MC does not beat annealing, {seen}", columns, rows, notes))
+        tables.append(difference_table(f"search-{view}-paired", f"The search: differences, {seen}", groups, REFERENCE))
+    return Report(tuple(tables))
+
+
+def mean_moves(rows: Sequence[Row]) -> float:
+    """Accepted moves a chain and frame; NaN where the filter has none that could be refused."""
+    moves = np.array([row.result.moves for row in rows])
+    return float(np.nanmean(moves)) if np.isfinite(moves).any() else float("nan")
+
+
 E2 = Part("E2", "Layers of the DE-MC filter", layer_report, layer_cases)
+SEARCH = Part("search", "Why DE-MC does not beat annealing", search_report, search_cases)
 CHOICE = Part("settings", "One setting at a time", choice_report, choice_cases)
