@@ -9,7 +9,7 @@ import pytest
 
 from filters.oracles import GaussianLikelihood, NormalEquations
 from muybridge.errors import InputError
-from muybridge.filters import ConstantVelocity, GaussianWalk, NearlyConstantVelocity, guided
+from muybridge.filters import ConstantVelocity, GaussianWalk, Guess, NearlyConstantVelocity, guided
 from muybridge.filters.dynamics import Belief
 
 SIZE = 3
@@ -239,6 +239,7 @@ class TwoModes:
     better: float = 100.0
     place: float = 0.0
     misfit: float = 0.0  # minus the log likelihood at the lower mode
+    guess: Guess | None = None
 
     def log_prob(self, poses: np.ndarray) -> np.ndarray:
         x = poses[:, 1]
@@ -326,10 +327,65 @@ class TestRedraw:
         assert plain.velocity[0] - 1e-12 <= state.velocity[0] <= self.SPEED
 
 
+class TestGuess:
+    """The mode that no climb reaches, guessed: one mode of the guess lies near it, another, likelier one nowhere."""
+
+    CONFIG = guided.Config(particles=100, sharpness=1.0, dependence=1.0, spreads=(1.0,) * 8)
+    GUESS = Guess(np.array([0.7, 0.3]), np.array([[-0.3], [HIGH - 0.2]]), np.full((2, 1), 0.2**2), np.array([1]))
+
+    def follow(self, likelihood: TwoModes, frames: int = 1, **settings: object) -> tuple[guided.State, float]:
+        """From the lower mode; the last state, and whether the guess was taken."""
+        rng, config = np.random.default_rng(2), replace(self.CONFIG, **settings)
+        state = guided.init(rng, np.array([0.0, LOW, 0.0]), np.full(SIZE, 0.05), config)
+        limits = np.array([np.inf, 1.5, np.inf])
+        dynamics = ConstantVelocity(np.full(SIZE, 0.1), -limits, limits, gain=0.5)
+        for _ in range(frames):
+            state, info = guided.step(rng, state, likelihood, dynamics, config)
+        return state, info.alpha
+
+    def test_finds_the_better_mode(self) -> None:
+        state, taken = self.follow(TwoModes(guess=self.GUESS))
+        assert state.estimate[1] == pytest.approx(HIGH, abs=MODE_SD) and taken == 1.0
+
+    @pytest.mark.parametrize(
+        ("guess", "settings"),
+        [
+            (None, {}),  # nothing guessed
+            (GUESS, {"guesses": 0}),  # not asked for
+            (GUESS, {"guesses": 1}),  # only the likelier of its modes, which is of no use
+        ],
+    )
+    def test_not_without_it(self, guess: Guess | None, settings: dict) -> None:
+        """Negative control."""
+        state, taken = self.follow(TwoModes(guess=guess), 5, **settings)
+        assert state.estimate[1] == pytest.approx(LOW, abs=MODE_SD)
+        assert np.isnan(taken) if guess is None or settings["guesses"] == 0 else taken == 0.0
+
+    @pytest.mark.parametrize(("improvement", "mode"), [(0.1, LOW), (0.05, HIGH)])
+    def test_a_mode_hardly_better_is_left_alone(self, improvement: float, mode: float) -> None:
+        """As for a redrawn limb: log 2 = 0.69 is less than a tenth of a misfit of 10, more than a twentieth."""
+        likelihood = TwoModes(better=2.0, misfit=10.0, guess=self.GUESS)
+        state, taken = self.follow(likelihood, improvement=improvement)
+        assert state.estimate[1] == pytest.approx(mode, abs=MODE_SD) and taken == (mode == HIGH)
+
+    def test_it_is_set_free_as_far_as_the_guess_says(self) -> None:
+        """The posterior of the guess's N(.8, .2^2) and the mode's N(1, .1^2); the carried covariance plays no part."""
+        state, _ = self.follow(TwoModes(guess=self.GUESS))
+        precision = 1 / 0.2**2 + 1 / MODE_SD**2 + 12.0 / 3.0**2  # the last: of a uniform density between the limits
+        assert state.covariance[1, 1] == pytest.approx(1.0 / precision)
+        assert state.estimate[1] == pytest.approx((0.8 / 0.2**2 + HIGH / MODE_SD**2 + 0.8 * 12.0 / 9.0) / precision)
+
+    def test_a_jump_is_no_velocity(self) -> None:
+        """It keeps the one it had, none."""
+        state, _ = self.follow(TwoModes(guess=self.GUESS))
+        assert state.estimate[1] - LOW > 1.5 and state.velocity[1] == 0.0
+
+
 @pytest.mark.parametrize(
     "settings",
     [
         {"spreads": ()},
+        {"guesses": -1},
         {"spreads": (0.1, 0.2)},
         {"spreads": (0.1, 0.0)},
         {"dependence": 0.0},

@@ -24,6 +24,7 @@ TABLES = ("joints.csv", "pose.csv", "diagnostics.csv")
 SETTINGS = {
     "guided": {"particles": 40, "redraws": 20},
     "annealed": {"particles": 40, "layers": 7},
+    "agp-pf": {"particles": 40, "layers": 7},
     "demc": {"particles": 20, "layers": 10},
     "tempered": {"particles": 20, "layers": 10},
     "condensation": {"particles": 200},

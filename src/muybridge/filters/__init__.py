@@ -5,13 +5,15 @@ name          file                 one line
 ============  ===================  ==================================================
 condensation  `condensation.py`    the plain particle filter; the one to compare with
 annealed      `annealed.py`        layers of sharpening likelihood and shrinking noise
+agp-pf        `agp_pf.py`          annealed, with particles from a guess among the first (Sedai, 2013)
 demc          `demc.py`            differential evolution Markov chains (Du, 2005)
 tempered      `tempered.py`        annealing whose moves are Metropolis-correct
 guided        `guided.py`          climb the contour, then draw from its curvature; the default
 ============  ===================  ==================================================
 
 Shared parts: `particles` (weights and what is read off them), `resampling`, `dynamics`, `schedule` (annealing
-exponents), `moves` (differential evolution, exchange), `state` (State, Info, common settings, how a step ends).
+exponents), `moves` (differential evolution, exchange), `guess` (a state guessed from one picture), `state` (State,
+Info, common settings, how a step ends).
 
 A filter is a module with `init`, `step`, `Config`, `PRINTED` and `WORKING`; a row of `METHODS` makes it appear
 in the conformance tests, the command line and the documentation.
@@ -25,8 +27,9 @@ from types import ModuleType
 from typing import Any
 
 from muybridge.errors import InputError
-from muybridge.filters import annealed, condensation, demc, guided, tempered
+from muybridge.filters import agp_pf, annealed, condensation, demc, guided, tempered
 from muybridge.filters.dynamics import ConstantVelocity, Dynamics, GaussianWalk, NearlyConstantVelocity
+from muybridge.filters.guess import Guess, GuessingLikelihood
 from muybridge.filters.particles import Weights, covariance, maximum_estimate, mean_estimate, standard_deviation
 from muybridge.filters.resampling import RESAMPLING, resample
 from muybridge.filters.state import CommonConfig, Info, Likelihood, State, state_from_arrays, state_to_arrays
@@ -62,6 +65,7 @@ METHODS: dict[str, Method] = {
     for row in (
         method_from_module("condensation", condensation, "select, predict, measure; the filter to compare with"),
         method_from_module("annealed", annealed, "layers of sharpening likelihood and shrinking noise"),
+        method_from_module("agp-pf", agp_pf, "annealed, with particles from a guess among the first"),
         method_from_module("demc", demc, "differential evolution Markov chains climb the likelihood together"),
         method_from_module("guided", guided, "climb to the mode by the contour, draw particles from its curvature"),
         method_from_module("tempered", tempered, "annealing whose moves leave the posterior invariant"),
@@ -83,6 +87,8 @@ __all__ = [
     "ConstantVelocity",
     "Dynamics",
     "GaussianWalk",
+    "Guess",
+    "GuessingLikelihood",
     "Info",
     "Likelihood",
     "Method",

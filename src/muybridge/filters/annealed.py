@@ -26,7 +26,7 @@ Cost: N M likelihood evaluations a frame, and one more for the estimate where th
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -86,11 +86,26 @@ WORKING = Config(particles=277, layers=18, survival=0.1, shrink=0.71, contractio
 
 init = PlainInit(WORKING)  # particles around a known pose
 
+Mix = Callable[[np.random.Generator, FloatArray], FloatArray]
+"""(rng, predicted particles (N, D)) -> the particles (N, D) that the first layer measures."""
+
 
 def step(
     rng: np.random.Generator, state: State, likelihood: Likelihood, dynamics: Dynamics, config: Config = WORKING
 ) -> tuple[State, Info]:
     """One frame, an annealing run of M layers; Deutscher et al. (2000), section 3."""
+    return anneal(rng, state, likelihood, dynamics, config)
+
+
+def anneal(
+    rng: np.random.Generator,
+    state: State,
+    likelihood: Likelihood,
+    dynamics: Dynamics,
+    config: Config,
+    mix: Mix | None = None,
+) -> tuple[State, Info]:
+    """As `step`, from a first population in which `mix` has put others in the place of some that were predicted."""
     counted = CountingLikelihood(likelihood, dynamics, config.sharpness)
     particles, weights = state.particles, Weights(state.log_weights)
     velocity: FloatArray | None = state.velocity
@@ -100,6 +115,8 @@ def step(
         if layer > 0:
             particles = _contracted(particles, weights, np.where(noise_scale > 0, config.contraction, 1.0))
         particles = dynamics.sample(rng, particles[selected], velocity, noise_scale)
+        if layer == 0 and mix is not None:
+            particles = mix(rng, particles)
         if layer == 0:
             predicted, velocity = particles, None  # the prediction is made once
         log_likelihoods = counted.log_prob(particles)

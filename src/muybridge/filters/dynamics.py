@@ -55,8 +55,11 @@ class Belief:
         return replace(self, mean=mean, covariance=covariance, velocity=velocity, cross=covariance @ gain.T,
                        velocity_covariance=velocity_covariance)  # fmt: skip
 
-    def freed(self, block: NDArray[np.intp], values: FloatArray, sd: float) -> Belief:
-        """The same with one block's components (B,) about `values`, wherever they were: a jump tells no velocity."""
+    def freed(self, block: NDArray[np.intp], values: FloatArray, sd: float | FloatArray) -> Belief:
+        """The same with one block's components (B,) about `values`, wherever they were: a jump tells no velocity.
+
+        sd : float or (B,) float64, state units
+        """
         mean, covariance, cross = self.mean.copy(), self.covariance.copy(), self.cross.copy()
         mean[block] = values
         covariance[block, :] = covariance[:, block] = 0.0

@@ -36,9 +36,13 @@ pose climbs once more from the prediction with that limb put there and set free 
 being cut and widened at its components. That pose is taken if it has clearly less misfit. How much less is a share of
 the misfit there is: where masks are bad, chance differences are larger too.
 
+A pose that is lost altogether is found again from a guess, where the likelihood has one (see `guess`): the whole pose
+climbs also from the guess's most likely modes, set free of its past as a redrawn limb is, about as far as the guess
+says; the best is taken if it has clearly less misfit, by the same share.
+
 Cost: `len(spreads)` looks at the contour and N likelihood evaluations a frame. With blocks, for each: `redraws`
 evaluations, and half as many looks, at that limb's contour alone, for every draw that is climbed from; and one whole
-climb more wherever a limb may be better elsewhere.
+climb more wherever a limb may be better elsewhere. With a guess, one whole climb for each of `guesses` modes.
 """
 
 from __future__ import annotations
@@ -51,7 +55,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from muybridge.errors import InputError
-from muybridge.filters.dynamics import Belief, Dynamics, reflect
+from muybridge.filters.dynamics import STANDING, Belief, Dynamics, reflect
+from muybridge.filters.guess import Guess, guess_of
 from muybridge.filters.particles import FloatArray, Weights
 from muybridge.filters.state import (
     CommonConfig,
@@ -116,6 +121,7 @@ class Config(CommonConfig):
     hopeful: float = 4.0  # log likelihood that a redraw may lack and still be climbed from
     improvement: float = 0.02  # share of the negative log likelihood, by which a climbed redraw must be better
     freedom: float = 0.5  # radians (metres); one standard deviation of a redrawn limb about where it climbed to
+    guesses: int = 6  # of a guess's modes, so many are climbed from; 0: none
     weighting: Literal["laplace", "likelihood", "importance"] = "laplace"  # equal | p(y|x) | p(y|x) p(x) / proposal
 
     def __post_init__(self) -> None:
@@ -125,6 +131,7 @@ class Config(CommonConfig):
         require("improvement", self.improvement >= 0, "0 or more", self.improvement)
         require("freedom", self.freedom > 0, "above 0", self.freedom)
         require("redraws", self.redraws >= 0, "0 or more", self.redraws)
+        require("guesses", self.guesses >= 0, "0 or more", self.guesses)
         require("tries", self.tries >= 1, "1 or more", self.tries)
         require("dependence", self.dependence > 0, "above 0", self.dependence)
         require(
@@ -178,6 +185,10 @@ def step(
     counted = CountingLikelihood(likelihood, dynamics, config.sharpness)
     prior = _Prior(dynamics.carry(state.belief), dynamics)
     peak = _climb_all(prior, counted, likelihood, config)
+    guess = guess_of(likelihood, peak.pose.size) if config.guesses else None
+    if guess is not None:
+        peak = _guessed(guess, peak, counted, likelihood, config)
+    taken = np.nan if guess is None else float(peak.prior is not prior)
     for block in config.blocks if config.redraws else ():
         peak = _redraw(rng, np.array(block), peak, counted, likelihood, config)
     mode = peak.pose
@@ -193,6 +204,7 @@ def step(
     layers.append(Weights(log_weights).survival_rate, config.sharpness)
     population = Population(particles, log_likelihoods)
     following, info = conclude(state, particles, population, log_weights, counted, config, dynamics, layers)
+    info = replace(info, alpha=taken)
     if info.collapsed:
         return following, info
     if config.weighting == "laplace":  # the particles' mean is the mode plus noise
@@ -218,7 +230,7 @@ class _Prior:
         towards = np.linalg.solve(self.precision, usual * (dynamics.usual - belief.mean))
         self.mean: FloatArray = np.clip(belief.mean + towards, dynamics.lower, dynamics.upper)
 
-    def freed(self, block: NDArray[np.intp], values: FloatArray, sd: float) -> _Prior:
+    def freed(self, block: NDArray[np.intp], values: FloatArray, sd: float | FloatArray) -> _Prior:
         """The same with one block's components (B,) about `values`, whatever they were before."""
         return _Prior(self.belief.freed(block, values, sd), self.dynamics)
 
@@ -266,6 +278,25 @@ def _climb_all(prior: _Prior, counted: CountingLikelihood, likelihood: GuidingLi
     return _Peak(pose, float(counted.log_prob(pose[None])[0]), seen, prior)
 
 
+def _guessed(
+    guess: Guess, peak: _Peak, counted: CountingLikelihood, likelihood: GuidingLikelihood, config: Config
+) -> _Peak:
+    """The best of the peaks above the guess's modes, where it explains the picture clearly better than `peak`."""
+    best, needed = peak, _needed(peak, config)
+    for mode in np.argsort(-guess.weights, kind="stable")[: config.guesses]:
+        sd = np.maximum(np.sqrt(guess.variances[mode]), STANDING)
+        free = peak.prior.freed(guess.components, guess.means[mode], sd)
+        other = _climb_all(free, counted, likelihood, config)
+        if other.log_likelihood > max(needed, best.log_likelihood):
+            best = other
+    return best
+
+
+def _needed(peak: _Peak, config: Config) -> float:
+    """The log likelihood from which another peak is clearly better."""
+    return peak.log_likelihood + config.improvement * abs(peak.log_likelihood)
+
+
 def _redraw(
     rng: np.random.Generator,
     block: NDArray[np.intp],
@@ -284,7 +315,7 @@ def _redraw(
     free = np.eye(peak.pose.size) / config.freedom**2
     for start in drawn[best[config.sharpness * (scores[best] - peak.log_likelihood) > -config.hopeful]]:
         alone, _ = climb(start, free, likelihood, dynamics, config.spreads[::2], block, config.dependence)
-        needed = peak.log_likelihood + config.improvement * abs(peak.log_likelihood)
+        needed = _needed(peak, config)
         if float(counted.log_prob(alone[None])[0]) <= needed:
             continue
         other = _climb_all(peak.prior.freed(block, alone[block], config.freedom), counted, likelihood, config)

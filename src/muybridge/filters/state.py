@@ -86,6 +86,8 @@ class Info:
         Of the estimate, not sharpened, with log p(x) / K of what is usual; -inf when collapsed.
     spread_before, spread_after : (D,) float64
         Standard deviation of the predicted particles, and of the weighted ones.
+    alpha : float
+        Share of the prior that came from a guess, (22) of Sedai et al. (2013); 0 where there was none.
     collapsed : bool
         No particle was possible; the state is the one before.
     remedy : str
@@ -101,6 +103,7 @@ class Info:
     log_likelihood: float
     spread_before: FloatArray
     spread_after: FloatArray
+    alpha: float = np.nan
     collapsed: bool = False
     remedy: str = ""
 

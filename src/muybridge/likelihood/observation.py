@@ -16,6 +16,7 @@ from muybridge._kernels.silhouette import silhouette_counts
 from muybridge.body.model import Body
 from muybridge.cameras.model import Rig
 from muybridge.errors import InputError
+from muybridge.filters.guess import Guess
 from muybridge.likelihood.colour import ColourReference, colour_tables, measure_reference, update_reference
 from muybridge.likelihood.contour import (
     SIDE_POINTS,
@@ -144,6 +145,7 @@ class Observation:
     shares : (C, H, W) uint8, reduced masks, 0 to FULL; bits : (C, H, words) uint64, the same thresholded at one half.
     pictures : C times (H, W, 3) or (H, W) uint8, reduced; none where no cue looks at them.
     reference : what the segments look like, where colour counts.
+    guess : of the pose, from the masks alone; for filters that ask for one.
     """
 
     model: ImageLikelihood
@@ -151,6 +153,7 @@ class Observation:
     bits: np.ndarray
     pictures: tuple[np.ndarray, ...] = ()
     reference: ColourReference | None = None
+    guess: Guess | None = None
 
     @property
     def body(self) -> Body:
@@ -166,6 +169,12 @@ class Observation:
     def cues(self) -> CueWeights:
         """The model's weights of the cues."""
         return self.model.cues
+
+    @property
+    def masks(self) -> list[np.ndarray]:
+        """C times (H, W) bool: the reduced masks, each at its own camera's size."""
+        sizes = [tuple(int(side) for side in row[[24, 23]]) for row in self.cameras]
+        return [share[:height, :width] >= HALF for share, (height, width) in zip(self.shares, sizes, strict=True)]
 
     @cached_property
     def areas(self) -> np.ndarray:

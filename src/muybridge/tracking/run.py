@@ -154,7 +154,7 @@ class _Run:
                 for record in kept:
                     log.append(**{name: record[name] for name in record.dtype.names})
                 for index, seconds, images, began in self._frames(eyes, start):
-                    masks = eyes.masks(images, tracker.predict(state))
+                    masks = eyes.masks(images, tracker.expected(state))
                     state, estimate = tracker.step(self._rng(index, 0), state, masks, eyes.pictures(images))
                     elapsed = (time.perf_counter() - began) * 1e3
                     record = _record(index, seconds, estimate, elapsed)

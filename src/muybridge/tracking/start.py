@@ -18,7 +18,6 @@ from muybridge.errors import InputError
 from muybridge.filters import guided
 from muybridge.filters.dynamics import GaussianWalk
 from muybridge.likelihood.observation import Observation
-from muybridge.likelihood.pictures import HALF
 
 #: Postures to begin from, degrees by degree of freedom; names that a body does not have are left out.
 POSTURES: tuple[Mapping[str, float], ...] = (
@@ -109,9 +108,8 @@ def place_of_masks(rig: Rig, observation: Observation) -> np.ndarray:
         )
     matrix, vector = np.zeros((3, 3)), np.zeros(3)
     for c in seeing:
-        height, width = rig[int(c)].size[1], rig[int(c)].size[0]
         factor = observation.model.reductions[int(c)]
-        rows, columns = np.nonzero(observation.shares[c, : height // factor, : width // factor] >= HALF)
+        rows, columns = np.nonzero(observation.masks[int(c)])
         middle = (np.array([np.median(columns), np.median(rows)]) + 0.5) * factor - 0.5
         origin, direction = rig[int(c)].pixel_to_ray(middle)
         across = np.eye(3) - np.outer(direction, direction)

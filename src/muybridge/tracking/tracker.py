@@ -13,13 +13,27 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
-from muybridge.filters import METHODS, CommonConfig, ConstantVelocity, Info, State, Weights, annealed, demc, guided
+from muybridge.errors import InputError
+from muybridge.filters import (
+    METHODS,
+    CommonConfig,
+    ConstantVelocity,
+    Guess,
+    Info,
+    State,
+    Weights,
+    agp_pf,
+    annealed,
+    demc,
+    guided,
+)
 from muybridge.likelihood.colour import ColourReference
 from muybridge.likelihood.observation import ImageLikelihood, Observation
+from muybridge.tracking.guessing import Guesser, placed, turned_towards
 from muybridge.tracking.motion import Motion, motion_of
 from muybridge.tracking.spread import SpreadConfig, carried, joint_deviations, laplace
 
@@ -37,6 +51,7 @@ class TrackerConfig:
     doubtful_ratio: float = 1.6  # or this many times the run's usual cost
     patience: int = 8  # doubted or unseen frames in a row after which the person counts as lost
     spread: SpreadConfig = SpreadConfig()
+    guess: Literal["always", "troubled"] | None = None  # when a pose is guessed; None: always for agp-pf alone
     trust: float = 0.05  # added to a camera's usual cost before weights are taken as its inverse
 
 
@@ -102,6 +117,7 @@ class Tracker:
     model: ImageLikelihood
     interval: float  # seconds
     config: TrackerConfig = TrackerConfig()
+    guesser: Guesser | None = None  # finds who is lost, and the first pose
 
     @cached_property
     def dynamics(self) -> ConstantVelocity:
@@ -131,12 +147,30 @@ class Tracker:
         blocks = self.model.body.blocks
         return tuple(tuple(blocks[name].tolist()) for name in sorted(blocks, key=lambda name: name != "root"))
 
-    def init(self, rng: np.random.Generator, pose: np.ndarray) -> TrackState:
-        """A state that believes in one pose (D,)."""
-        method = METHODS[self.config.method]
+    def init(
+        self, rng: np.random.Generator, pose: np.ndarray | None = None, observation: Observation | None = None
+    ) -> TrackState:
+        """A state that believes in one pose (D,), or in what is guessed from the first frame's evidence."""
         sd = self.dynamics.noise_sd
-        state = method.init(rng, pose, sd, self.filter_config, self.dynamics.lower, self.dynamics.upper)
-        return TrackState(state, np.full(len(self.model.rig), np.nan), np.diag(np.square(sd)))
+        common = sd, self.filter_config, self.dynamics.lower, self.dynamics.upper
+        if pose is None:
+            guess, rest = self._first_guess(observation)
+            if isinstance(self.filter_config, agp_pf.Config):
+                return self._started(agp_pf.begin(rng, guess, rest, *common))
+            poses = np.clip(guess.poses(rest), self.dynamics.lower, self.dynamics.upper)
+            pose = poses[int(np.argmin(observation.costs(poses).mean(axis=1)))]
+        return self._started(METHODS[self.config.method].init(rng, pose, *common))
+
+    def _started(self, state: State) -> TrackState:
+        return TrackState(state, np.full(len(self.model.rig), np.nan), np.diag(np.square(self.dynamics.noise_sd)))
+
+    def _first_guess(self, observation: Observation | None) -> tuple[Guess, np.ndarray]:
+        """A guess with the place in it, and a pose (D,) for what it does not speak of."""
+        guess = None if observation is None else self._made(observation)
+        if observation is None or guess is None:
+            raise InputError("first pose", expected="a pose, or a frame of which one can be guessed", got="neither")
+        rest = np.clip(np.zeros(len(self.model.body.dof_names)), self.dynamics.lower, self.dynamics.upper)
+        return placed(guess, observation, rest), rest
 
     def restore(self, arrays: dict[str, np.ndarray]) -> TrackState:
         """The state that `TrackState.to_arrays` saved."""
@@ -150,6 +184,11 @@ class Tracker:
     def predict(self, state: TrackState) -> np.ndarray:
         """(J, 3) metres: where the joints are expected in the next frame."""
         return self.model.body.joints(self._predicted(state))
+
+    def expected(self, state: TrackState) -> np.ndarray | None:
+        """(J, 3) metres as `predict`; None, anywhere, for a person who is lost and can be found by a guess."""
+        anywhere = self.guesser is not None and state.troubled > self.config.patience
+        return None if anywhere else self.predict(state)
 
     def step(
         self,
@@ -169,7 +208,8 @@ class Tracker:
         if not seeing.any():
             return self._unseen(state)
         reference = self._reference(state, observation)
-        observation = replace(observation, model=self.weighted(state, seeing), reference=reference)
+        guess = self._guess(state, observation)
+        observation = replace(observation, model=self.weighted(state, seeing), reference=reference, guess=guess)
         method = METHODS[self.config.method]
         following, info = method.step(rng, state.filter, observation, self.dynamics, self.filter_config)
         if info.collapsed:
@@ -196,6 +236,22 @@ class Tracker:
             return state.covariance, np.zeros_like(state.estimate)
         known = carried(before, self.dynamics, self.model.body)
         return laplace(observation, state.estimate, known, self.dynamics, self.config.spread)
+
+    def _guess(self, state: TrackState, observation: Observation) -> Guess | None:
+        """What the filter may ask for; with the place from the masks where the person's is not known."""
+        troubled = state.troubled > 0 or state.seen == 0
+        when = self.config.guess or ("always" if self.config.method == "agp-pf" else "troubled")
+        guess = self._made(observation) if troubled or when == "always" else None
+        if guess is None:
+            return None
+        guess = turned_towards(guess, state.filter.estimate, self.model.body)
+        return placed(guess, observation, state.filter.estimate) if troubled else guess
+
+    def _made(self, observation: Observation) -> Guess | None:
+        """The guess that the evidence carries, else one made of its masks."""
+        if observation.guess is not None or self.guesser is None:
+            return observation.guess
+        return self.guesser.guess(observation.masks)
 
     def _reference(self, state: TrackState, observation: Observation) -> ColourReference | None:
         """What the segments look like: as known, else as at the first pose; None where colour does not count."""
