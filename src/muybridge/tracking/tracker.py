@@ -154,6 +154,8 @@ class Tracker:
         sd = self.dynamics.noise_sd
         common = sd, self.filter_config, self.dynamics.lower, self.dynamics.upper
         if pose is None:
+            if observation is None:
+                raise InputError("first pose", expected="a pose, or a frame of which one can be guessed", got="neither")
             guess, rest = self._first_guess(observation)
             if isinstance(self.filter_config, agp_pf.Config):
                 return self._started(agp_pf.begin(rng, guess, rest, *common))
@@ -164,10 +166,10 @@ class Tracker:
     def _started(self, state: State) -> TrackState:
         return TrackState(state, np.full(len(self.model.rig), np.nan), np.diag(np.square(self.dynamics.noise_sd)))
 
-    def _first_guess(self, observation: Observation | None) -> tuple[Guess, np.ndarray]:
+    def _first_guess(self, observation: Observation) -> tuple[Guess, np.ndarray]:
         """A guess with the place in it, and a pose (D,) for what it does not speak of."""
-        guess = None if observation is None else self._made(observation)
-        if observation is None or guess is None:
+        guess = self._made(observation)
+        if guess is None:
             raise InputError("first pose", expected="a pose, or a frame of which one can be guessed", got="neither")
         rest = np.clip(np.zeros(len(self.model.body.dof_names)), self.dynamics.lower, self.dynamics.upper)
         return placed(guess, observation, rest), rest

@@ -122,23 +122,32 @@ def gather(training: Training, outputs: PoseOutputs, config: Config, progress: P
     scenes = [(source, *key) for source in training.scenes
               for key in product(source.figures, source.motions, source.seeds)]  # fmt: skip
     total, parts = len(scenes) + len(training.recordings), []
+    people: list[str] = []
     for source, figure, motion, seed in scenes:
         parts.append(of_scene(source, figure, motion, seed, outputs, config))
+        people.append(figure)
         if progress:
             progress(len(parts), total)
     for recording in training.recordings:
         parts.append(of_recording(recording, outputs, config))
+        people.append(str(recording.run))
         if progress:
             progress(len(parts), total)
-    return joined(parts)
+    return joined(parts, people)
 
 
-def joined(parts: Sequence[tuple[np.ndarray, np.ndarray]]) -> Examples:
-    """(descriptors, outputs) of each clip as one."""
-    clips = np.repeat(np.arange(len(parts)), [len(part[0]) for part in parts])
-    if not clips.size:
+def joined(parts: Sequence[tuple[np.ndarray, np.ndarray]], people: Sequence[str]) -> Examples:
+    """(descriptors, outputs) of each clip, and whom it shows, as one."""
+    counts = [len(part[0]) for part in parts]
+    if not sum(counts):
         raise InputError("training: examples", expected="silhouettes of somebody", got="none in any clip")
-    return Examples(np.concatenate([part[0] for part in parts]), np.concatenate([part[1] for part in parts]), clips)
+    whom = np.unique(people, return_inverse=True)[1]
+    return Examples(
+        np.concatenate([part[0] for part in parts]),
+        np.concatenate([part[1] for part in parts]),
+        np.repeat(np.arange(len(parts)), counts),
+        np.repeat(whom, counts),
+    )
 
 
 def of_scene(
