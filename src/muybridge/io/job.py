@@ -106,6 +106,23 @@ class StartInput(Table, frozen=True):
 START_WORDS = ("auto", "reference")
 
 
+class GuessInput(Table, frozen=True):
+    """`[guess]`: a regressor that guesses the pose from the masks, where it is not known."""
+
+    model: str = "shipped"
+    """A file that `train` wrote; `shipped`: the program's own, for bodies that turn as its person does; or `none`."""
+    when: Literal["always", "troubled"] | None = None
+    """In every frame, or where the last one is doubted; as the filter needs it where absent."""
+
+    @property
+    def file(self) -> Path | None:
+        """The model's file, where the job names one."""
+        return None if self.model in GUESS_WORDS else Path(self.model)
+
+
+GUESS_WORDS = ("shipped", "none")
+
+
 class FilterInput(Table, frozen=True):
     """`[filter]`: a method of `muybridge.filters.METHODS`; every other key is a setting of that method."""
 
@@ -175,6 +192,7 @@ class Job(Table, frozen=True):
     frames: FrameRange | None = None
     body: BodyInput = BodyInput()
     start: StartInput = StartInput()
+    guess: GuessInput = GuessInput()
     filter: FilterInput = FilterInput()
     motion: MotionInput = MotionInput()
     likelihood: LikelihoodInput = LikelihoodInput()
@@ -198,6 +216,7 @@ ORDER = (
     "camera",
     "body",
     "start",
+    "guess",
     "filter",
     "motion",
     "likelihood",
@@ -271,6 +290,8 @@ def dumps(job: Job, folder: Path | None = None) -> str:
     table = msgspec.to_builtins(job, enc_hook=lambda path: _relative(str(path), folder))
     if job.start.file is not None:
         table["start"]["pose"] = _relative(job.start.pose, folder)
+    if job.guess.file is not None:
+        table["guess"]["model"] = _relative(job.guess.model, folder)
     if isinstance(job.body.measures, str):
         table["body"]["measures"] = _relative(job.body.measures, folder)
     for open_table in (table.get("filter", {}), *(row.get("background", {}) for row in table["camera"])):
@@ -290,8 +311,10 @@ def _check_range(frames: tuple[int, int] | None, name: str) -> None:
 
 
 def _resolve_text_paths(table: dict[str, Any], folder: Path) -> None:
-    """The two keys that are a path only when they are not something else."""
-    start, body = table.get("start"), table.get("body")
+    """The keys that are a path only when they are not something else."""
+    start, body, guess = table.get("start"), table.get("body"), table.get("guess")
+    if isinstance(guess, dict) and isinstance(guess.get("model"), str) and guess["model"] not in GUESS_WORDS:
+        guess["model"] = str(folder / guess["model"])
     if isinstance(start, dict) and isinstance(start.get("pose"), str) and start["pose"] not in START_WORDS:
         start["pose"] = str(folder / start["pose"])
     if isinstance(body, dict) and isinstance(body.get("measures"), str):

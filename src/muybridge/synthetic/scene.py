@@ -25,7 +25,7 @@ from muybridge.synthetic.rigs import ring
 from muybridge.synthetic.room import Room
 from muybridge.synthetic.sensor import exposed
 from muybridge.synthetic.skinning import Figure, load_figure
-from muybridge.synthetic.stage import Stage, stage
+from muybridge.synthetic.stage import Actor, Stage, actors, stage, things
 from muybridge.synthetic.visibility import segment_of_bone, visible_shares
 
 EMPTY_FRAMES = -(2**20)  # frames of the empty scene draw their noise from here on, apart from the clip's
@@ -78,12 +78,12 @@ def demo_scene(seed: int = 0, *, duration: float = 3.0, rate: float = 30.0) -> S
 
 def truth(scene: Scene) -> Track:
     """The true joints and bone frames of the clip."""
-    return stage(scene).actors[0].track
+    return actors(scene)[0].track
 
 
 def figure_of(scene: Scene) -> Figure:
     """The person in the scene."""
-    return stage(scene).actors[0].figure
+    return actors(scene)[0].figure
 
 
 def render(scene: Scene, frame: int) -> tuple[tuple[np.ndarray, ...], tuple[np.ndarray, ...]]:
@@ -123,12 +123,12 @@ def silhouettes(scene: Scene, frame: int) -> tuple[np.ndarray, ...]:
 
     The masks of `render` for a shutter that is not open, without the pictures and in a fraction of the time.
     """
-    made = stage(scene)
     state = scene.light.state(frame / scene.rate)
-    now = [actor.mesh(frame) for actor in made.actors]
+    people, standing = actors(scene), things(scene, state)
+    now = [actor.mesh(frame) for actor in people]
     masks = []
     for index, camera in enumerate(scene.rig):
-        layers = [*_drawn(camera, made, now, scene.light.lamps[state]), *made.decors[state].things[index]]
+        layers = [*_drawn(camera, people, now, scene.light.lamps[state]), *standing[index]]
         width, height = camera.size
         masks.append(lay_over(np.zeros((height, width, 3), dtype=np.float32), layers) >= 0.5)
     return tuple(masks)
@@ -161,12 +161,12 @@ def _filmed(
 ) -> tuple[np.ndarray, np.ndarray, list[Layer]]:
     """Light (H, W, 3) and how much of each pixel is the person (H, W), over the open shutter; one moment's layers."""
     if len(moments) == 1:
-        layers = _drawn(camera, made, moments[0], lamp)
+        layers = _drawn(camera, made.actors, moments[0], lamp)
         return backdrop, lay_over(backdrop, [*layers, *things]), layers
     light, seen = np.zeros_like(backdrop), np.zeros(backdrop.shape[:2], dtype=np.float32)
     for number, meshes in enumerate(moments):
         shifted = camera.shifted(*JITTER[number % len(JITTER)])
-        layers = _drawn(shifted, made, meshes, lamp, samples=1)
+        layers = _drawn(shifted, made.actors, meshes, lamp, samples=1)
         picture = backdrop.copy()
         seen += lay_over(picture, [*layers, *things])
         light += picture
@@ -174,11 +174,11 @@ def _filmed(
     return light * share, seen * share, []
 
 
-def _drawn(camera: Camera, made: Stage, meshes: list[Mesh], lamp: Lamp, samples: int = 2) -> list[Layer]:
+def _drawn(camera: Camera, people: tuple[Actor, ...], meshes: list[Mesh], lamp: Lamp, samples: int = 2) -> list[Layer]:
     light = np.array(lamp.direction)
     return [
         draw(camera, mesh, actor.cloth, light=light, samples=samples)
-        for mesh, actor in zip(meshes, made.actors, strict=True)
+        for mesh, actor in zip(meshes, people, strict=True)
     ]
 
 
@@ -186,7 +186,7 @@ def _visible(
     camera: Camera, made: Stage, meshes: list[Mesh], layers: list[Layer], things: tuple[Layer, ...]
 ) -> np.ndarray:
     """(S,) visible shares in the middle of the exposure."""
-    layers = layers or _drawn(camera, made, meshes, Lamp())
+    layers = layers or _drawn(camera, made.actors, meshes, Lamp())
     before = depth_map([*layers[1:], *things], camera.size)
     return visible_shares(camera, meshes[0], layers[0], before, segment_of_bone(made.actors[0].figure.bone_names))
 

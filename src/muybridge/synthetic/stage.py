@@ -89,10 +89,27 @@ def stage(scene: Scene) -> Stage:
     if scene.occluders:
         coarse = mesh_of(scene.occluders, cell=np.inf)
         solids = ((coarse.vertices, coarse.faces),)
-    actors = tuple(_actor(scene, index, person) for index, person in enumerate(scene.people))
-    made = Stage(actors, (), floors, solids)
+    made = Stage(actors(scene), (), floors, solids)
     bare = tuple(plate for plate, _ in rooms)
-    return Stage(actors, tuple(_decor(scene, made, bare, lamp) for lamp in scene.light.lamps), floors, solids)
+    decors = tuple(_decor(scene, made, bare, state) for state in range(len(scene.light.lamps)))
+    return Stage(made.actors, decors, floors, solids)
+
+
+@lru_cache(maxsize=4)
+def actors(scene: Scene) -> tuple[Actor, ...]:
+    """The people of a scene alone, the person to be tracked first: without rooms, in a fraction of the time."""
+    return tuple(_actor(scene, index, person) for index, person in enumerate(scene.people))
+
+
+@lru_cache(maxsize=4)
+def things(scene: Scene, state: int) -> tuple[tuple[Layer, ...], ...]:
+    """The occluders under one state of the light, drawn for each camera; none where there are none."""
+    if not scene.occluders:
+        return tuple(() for _ in scene.rig)
+    mesh = mesh_of(scene.occluders)
+    cloth = cloth_of(np.random.default_rng([scene.seed, 2]), scene.occluders)
+    light = np.array(scene.light.lamps[state].direction)
+    return tuple((draw(camera, mesh, cloth, light=light),) for camera in scene.rig)
 
 
 def _actor(scene: Scene, index: int, person: Person) -> Actor:
@@ -103,18 +120,16 @@ def _actor(scene: Scene, index: int, person: Person) -> Actor:
     return Actor(figure, cloth, perform(figure, person.motion), person.looseness)
 
 
-def _decor(scene: Scene, made: Stage, bare: tuple[np.ndarray, ...], lamp: Lamp) -> Decor:
+def _decor(scene: Scene, made: Stage, bare: tuple[np.ndarray, ...], state: int) -> Decor:
+    lamp, drawn = scene.light.lamps[state], things(scene, state)
     rooms = tuple(_under(scene, camera, plate, lamp) for camera, plate in zip(scene.rig, bare, strict=True))
     if not scene.occluders:
-        return Decor(rooms, tuple(() for _ in rooms), rooms)
-    mesh = mesh_of(scene.occluders)
-    cloth = cloth_of(np.random.default_rng([scene.seed, 2]), scene.occluders)
-    things = tuple((draw(camera, mesh, cloth, light=np.array(lamp.direction)),) for camera in scene.rig)
+        return Decor(rooms, drawn, rooms)
     shade = made.shade([], lamp, scene.shadow)
     plates = tuple(shade.applied(room, floor) for room, floor in zip(rooms, made.floors, strict=True))
-    for plate, layers in zip(plates, things, strict=True):
+    for plate, layers in zip(plates, drawn, strict=True):
         lay_over(plate, layers)
-    return Decor(rooms, things, plates)
+    return Decor(rooms, drawn, plates)
 
 
 def _under(scene: Scene, camera: Camera, plate: np.ndarray, lamp: Lamp) -> np.ndarray:

@@ -21,7 +21,7 @@ from muybridge.errors import InputError
 from muybridge.filters import Guess, guided
 from muybridge.filters.dynamics import GaussianWalk
 from muybridge.likelihood.observation import Observation
-from muybridge.tracking.start import place_of_masks
+from muybridge.tracking.start import Start, StartConfig, chosen, climbed, place_of_masks
 
 PLACE = np.arange(3)  # components of a pose
 PLACE_SD, PLACE_SD_ONE = 0.05, 0.1  # metres: of a mode's place among two or more cameras, and before one
@@ -100,3 +100,19 @@ def _way_of_one(pose: np.ndarray, observation: Observation) -> np.ndarray:
 def _tall(camera: Camera, joints: np.ndarray) -> float:
     """Rows that the joints (J, 3) span, pixels as recorded."""
     return float(np.ptp(camera.world_to_pixel(joints)[:, 1]))
+
+
+def guessed_start(
+    observation: Observation,
+    guess: Guess,
+    config: StartConfig = StartConfig(),  # noqa: B008 - frozen
+) -> Start:
+    """The best first pose among those that a guess leads to; it needs one camera only.
+
+    Each mode is stood where the masks are and climbs, as the candidates of `start.automatic_start` do.
+    """
+    body = observation.body
+    rest = np.clip(np.zeros(len(body.dof_names)), body.lower, body.upper)
+    poses = np.clip(placed(guess, observation, rest).poses(rest), body.lower, body.upper)
+    climbs = np.array([climbed(observation, pose, config, config.narrow) for pose in poses])
+    return chosen(climbs, observation.costs(climbs).mean(axis=1), body, len(climbs))

@@ -19,6 +19,7 @@ from muybridge.io.job import Job
 from muybridge.likelihood.observation import ImageLikelihood, Observation
 from muybridge.tracking.evidence import Eyes
 from muybridge.tracking.fit import Fit, FitConfig, fit_body
+from muybridge.tracking.guessing import Guesser, guessed_start
 from muybridge.tracking.pose_input import first_pose
 from muybridge.tracking.start import Start, StartConfig, automatic_start
 from muybridge.tracking.tracker import Estimate, Tracker, TrackerConfig
@@ -66,12 +67,14 @@ class Preparation:
         return out
 
 
-def prepare(job: Job, eyes: Eyes, body: Body, interval: float, frames: tuple[int, int]) -> Preparation:
+def prepare(
+    job: Job, eyes: Eyes, body: Body, interval: float, frames: tuple[int, int], guesser: Guesser | None = None
+) -> Preparation:
     """Find the first pose, fit the body where the job asks for it, check the cameras where there are several."""
     model = ImageLikelihood(body, eyes.rig, eyes.reductions)
     start, start_frame, pose = None, frames[0], first_pose(job, body, frames[0])
     if pose is None:
-        start, start_frame = _find_start(model, eyes, frames, interval)
+        start, start_frame = _find_start(model, eyes, frames, interval, guesser)
         pose = _track_between(model, eyes, interval, start.pose, start_frame, frames[0])
     fit = check = None
     if len(eyes.rig) > 1:  # one camera cannot tell a long limb from a near one
@@ -98,14 +101,16 @@ def observe(model: ImageLikelihood, eyes: Eyes, index: int, expected: np.ndarray
     return model.observe(eyes.masks(eyes.read(index), expected))
 
 
-def _find_start(model: ImageLikelihood, eyes: Eyes, frames: tuple[int, int], interval: float) -> tuple[Start, int]:
+def _find_start(
+    model: ImageLikelihood, eyes: Eyes, frames: tuple[int, int], interval: float, guesser: Guesser | None
+) -> tuple[Start, int]:
     """The first pose, in the first frame that gives a clear one, else in the best of the first seconds."""
     span = min(frames[1] - frames[0], round(START_SECONDS / interval))
     best: tuple[Start, int] | None = None
     trouble: InputError | None = None
     for index in np.unique(np.linspace(frames[0], frames[0] + span, START_TRIES).round().astype(int)).tolist():
         try:
-            found = automatic_start(observe(model, eyes, index, None))
+            found = _start_in(observe(model, eyes, index, None), guesser)
         except InputError as error:
             trouble = trouble or error
             continue
@@ -125,6 +130,16 @@ def _find_start(model: ImageLikelihood, eyes: Eyes, frames: tuple[int, int], int
             remedy="give the first pose in [start], mend the masks, or begin where the person stands upright",
         )
     return best
+
+
+def _start_in(observation: Observation, guesser: Guesser | None) -> Start:
+    """The first pose in one frame: guessed, and where that is not good, or nothing is guessed, searched for too."""
+    guess = guesser.guess(observation.masks) if guesser is not None else None
+    guessed = guessed_start(observation, guess) if guess is not None else None
+    if guessed is not None and (guessed.cost < GOOD_START or np.count_nonzero(observation.areas) < 2):
+        return guessed
+    searched = automatic_start(observation)
+    return searched if guessed is None or searched.cost < guessed.cost else guessed
 
 
 def _track_between(

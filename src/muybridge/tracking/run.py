@@ -35,6 +35,7 @@ from muybridge.tracking.diagnostics import DiagnosticsWriter
 from muybridge.tracking.evidence import Eyes, open_eyes
 from muybridge.tracking.motion import Motion, motion_of
 from muybridge.tracking.prepare import Preparation, body_of_job, prepare, reductions_of, rig_of_job
+from muybridge.tracking.silhouette_guesser import guesser_of_job
 from muybridge.tracking.spread import MEASURED, SpreadConfig
 from muybridge.tracking.tracker import LOST, TRACKED, Estimate, Tracker, TrackerConfig, TrackState
 
@@ -116,7 +117,8 @@ class _Run:
             return self._summarise(tracker)
 
     def _prepare(self, eyes: Eyes, body: Body) -> Preparation:
-        return prepare(self.job, eyes, body, self._interval(eyes), (self.first, self.last))
+        guesser = guesser_of_job(self.job, ImageLikelihood(body, eyes.rig, eyes.reductions))
+        return prepare(self.job, eyes, body, self._interval(eyes), (self.first, self.last), guesser)
 
     def _interval(self, eyes: Eyes) -> float:
         return 1.0 / float(eyes.sources[0].frame_rate)
@@ -127,8 +129,11 @@ class _Run:
         eyes.eyes = [replace(eye, camera=rig[eye.camera.name]) for eye in eyes.eyes]
         rig = Rig(tuple(rig[eye.camera.name] for eye in eyes.eyes))
         spread = SpreadConfig() if self.job.body.fit else MEASURED
-        config = TrackerConfig(self.job.filter.name, filter_config(self.job), self._motion(), spread=spread)
-        return Tracker(ImageLikelihood(body, rig, eyes.reductions, cues=self.cues), self._interval(eyes), config)
+        config = TrackerConfig(
+            self.job.filter.name, filter_config(self.job), self._motion(), spread=spread, guess=self.job.guess.when
+        )
+        model = ImageLikelihood(body, rig, eyes.reductions, cues=self.cues)
+        return Tracker(model, self._interval(eyes), config, guesser_of_job(self.job, model))
 
     def _motion(self) -> Motion:
         """The method's own, with the job's settings in place of it."""

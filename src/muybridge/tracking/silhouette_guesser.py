@@ -9,16 +9,29 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
 
 import numpy as np
 
 from muybridge.body import Body
 from muybridge.cameras.model import Camera
 from muybridge.filters import Guess
+from muybridge.io.job import Job
 from muybridge.likelihood.observation import ImageLikelihood
-from muybridge.regression import PoseMixture, PoseOutputs, SilhouetteRegressor, bearing, combined, describe, turned
+from muybridge.regression import (
+    PoseMixture,
+    PoseOutputs,
+    SilhouetteRegressor,
+    bearing,
+    combined,
+    describe,
+    load_regressor,
+    turned,
+)
 from muybridge.regression.model_file import require_components
 
+SHIPPED = Path(__file__).parents[1] / "regression" / "models" / "person.npz"
 FEWEST_PIXELS = 200  # a smaller silhouette shows too little of a pose
 AGREEMENT = 0.3  # how much the cameras vote for each other's modes, see `regression.combined`
 
@@ -72,3 +85,20 @@ class SilhouetteGuesser:
             return None
         means = PoseOutputs(self.body).to_poses(mixture.means, np.zeros(3))[:, 3:]
         return Guess(mixture.weights, means, mixture.variances, np.arange(3, 3 + means.shape[1]))
+
+
+def guesser_of_job(job: Job, model: ImageLikelihood) -> SilhouetteGuesser | None:
+    """The guesser that a job asks for; None where it asks for none, or the shipped one knows no such body."""
+    if job.guess.model == "none":
+        return None
+    if job.guess.file is not None:
+        return SilhouetteGuesser.of(_loaded(job.guess.file), model)
+    shipped = _loaded(SHIPPED)
+    same = model.body.dof_names[3:] == shipped.components.names
+    same = same and PoseOutputs(model.body).components == shipped.components
+    return SilhouetteGuesser.of(shipped, model) if same else None
+
+
+@lru_cache(maxsize=2)
+def _loaded(path: Path) -> SilhouetteRegressor:
+    return load_regressor(path)

@@ -81,13 +81,18 @@ def automatic_start(observation: Observation, config: StartConfig = StartConfig(
     model = observation.model
     place = place_of_masks(model.rig, observation)
     starts = _candidates(model.body, place, config.headings)
-    poses = np.array([_climb(observation, pose, config, config.wide) for pose in starts])
+    poses = np.array([climbed(observation, pose, config, config.wide) for pose in starts])
     order = np.argsort(observation.costs(poses).mean(axis=1))[: config.refined]
-    refined = np.array([_climb(observation, pose, config, config.narrow) for pose in poses[order]])
+    refined = np.array([climbed(observation, pose, config, config.narrow) for pose in poses[order]])
     poses = np.concatenate([refined, poses])  # among the others may be the only ones that head elsewhere
     costs = observation.costs(poses).mean(axis=1)
-    best = int(np.argmin(costs[: len(refined)]))
-    yaw = model.body.dof_names.index("root_yaw")
+    return chosen(poses, costs, model.body, len(refined))
+
+
+def chosen(poses: np.ndarray, costs: np.ndarray, body: Body, good: int) -> Start:
+    """The cheapest of the first `good` poses (N, D), and what the cheapest that heads elsewhere costs."""
+    best = int(np.argmin(costs[:good]))
+    yaw = body.dof_names.index("root_yaw")
     apart = np.cos(poses[:, yaw] - poses[best, yaw]) < 0.0
     rival = float(costs[apart].min()) if apart.any() else 1.0
     return Start(poses[best], float(costs[best]), rival)
@@ -152,7 +157,8 @@ def _upright(body: Body) -> np.ndarray:
     return np.clip(np.zeros(len(body.dof_names)), body.lower, body.upper)
 
 
-def _climb(observation: Observation, pose: np.ndarray, config: StartConfig, spreads: tuple[float, ...]) -> np.ndarray:
+def climbed(observation: Observation, pose: np.ndarray, config: StartConfig, spreads: tuple[float, ...]) -> np.ndarray:
+    """The pose (D,) that the contour leads to from a pose (D,) that is hardly known."""
     body = observation.model.body
     sd = np.full(len(pose), config.turn_sd)
     sd[:3] = config.place_sd
