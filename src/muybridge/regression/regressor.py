@@ -22,9 +22,10 @@ from threadpoolctl import threadpool_limits
 
 from muybridge.errors import InputError
 from muybridge.filters.particles import FloatArray
+from muybridge.regression import clusters as clusters_module
 from muybridge.regression import descriptor as descriptors_module
 from muybridge.regression.cluster_regression import ClusterExamples, ClusterRegression, RegressionConfig, learn
-from muybridge.regression.clusters import PRINTED_SPLITS, cluster_poses
+from muybridge.regression.clusters import ClusterConfig, cluster_poses
 from muybridge.regression.components import PoseComponents
 from muybridge.regression.descriptor import DescriptorConfig
 from muybridge.regression.gate import GateConfig, LogisticGate, by_variance, fit_gate
@@ -36,7 +37,7 @@ class Config:
     """Settings of a regressor."""
 
     descriptor: DescriptorConfig = descriptors_module.WORKING  # how its inputs are made
-    splits: tuple[int, ...] = (2, 2, 4, 4)  # clusters of those who face the camera, away, right, left
+    clusters: ClusterConfig = clusters_module.WORKING
     regression: RegressionConfig = RegressionConfig()
     gate: Literal["logistic", "variance"] = "logistic"
     logistic: GateConfig = GateConfig(landmarks=400)
@@ -54,7 +55,7 @@ class Config:
 
 PRINTED = Config(
     descriptor=descriptors_module.PRINTED,
-    splits=PRINTED_SPLITS,
+    clusters=clusters_module.PRINTED,
     regression=RegressionConfig(sharing="none", choice="random"),
     logistic=GateConfig(),
 )
@@ -162,8 +163,8 @@ def fit_regressor(
         raise InputError("descriptors to learn from", expected="some that differ", got="all alike")
     inputs = (descriptors - centre) / scale
     with threadpool_limits(limits=1, user_api="blas"):
-        labels = cluster_poses(poses, np.asarray(facing, dtype=np.float64), components, config.splits)
-        count = int(labels.max()) + 1
+        labels = cluster_poses(poses, np.asarray(facing, dtype=np.float64), components, config.clusters)
+        count = config.clusters.count
         gate_rng, *generators = rng.spawn(count + 1)
 
         def learnt(cluster: int) -> ClusterRegression:
