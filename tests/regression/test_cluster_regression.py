@@ -15,7 +15,6 @@ from muybridge.regression.cluster_regression import (
     learn,
 )
 from muybridge.regression.components import PoseComponents
-from muybridge.regression.gaussian_process import squared_distances
 
 COMPONENTS = PoseComponents(("yaw", "knee", "ankle"), (0,), 0)
 NOISE = 0.05
@@ -30,7 +29,7 @@ def made(rng, count, centre=np.pi, spread=0.7):
 
 
 def predictions(regression, inputs):
-    found = [regression.predict(row) for row in squared_distances(inputs, regression.examples.inputs)]
+    found = [regression.predict(row) for row in inputs]
     return np.array([mean for mean, _ in found]), np.array([variance for _, variance in found])
 
 

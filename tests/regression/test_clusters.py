@@ -95,7 +95,7 @@ def test_nobody_faces_a_direction(first):
         cluster_poses(forward, forward[:, 0], COMPONENTS, ClusterConfig(first=first))
     assert "\n" not in str(raised.value)
     with pytest.raises(InputError, match="face -135 degrees from the camera"):
-        right = poses[turn(poses[:, 0] - 1.0) < 1.0]  # -135 degrees are nearer than 1 from -3.85 to -0.68 only
+        right = poses[turn(poses[:, 0] - 1.0) < 1.0]  # -135 degrees are nearer than 1 from -3.82 to -0.68 only
         cluster_poses(right, right[:, 0], COMPONENTS, ClusterConfig((1.0, np.radians(-135)), (1, 1)))
 
 

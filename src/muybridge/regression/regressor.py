@@ -14,7 +14,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
-from functools import cached_property
 from typing import Literal
 
 import numpy as np
@@ -90,37 +89,21 @@ class SilhouetteRegressor:
             expected = f"shape {self.centre.shape}, finite: as the regressor was trained"
             raise InputError("descriptor", expected=expected, got=f"shape {descriptor.shape}")
         x = (descriptor - self.centre) / self.scale
-        distances = np.split(self._distances(x), self._ends)
         if self.gate is None:
-            found = [cluster.predict(own) for cluster, own in zip(self.clusters, distances, strict=True)]
+            found = [cluster.predict(x) for cluster in self.clusters]
             weights = by_variance(np.array([variances for _, variances in found]))
             used = np.flatnonzero(weights >= self.config.negligible)
             found = [found[mode] for mode in used]
         else:
             weights = np.exp(self.gate.log_prob(x[None])[0])
             used = np.flatnonzero(weights >= self.config.negligible)
-            found = [self.clusters[mode].predict(distances[mode]) for mode in used]
+            found = [self.clusters[mode].predict(x) for mode in used]
         means, variances = (np.array(part) for part in zip(*found, strict=True))
         return PoseMixture(self.components, weights[used], means, variances)
 
     def with_trusted_variance(self, trusted_variance: float) -> SilhouetteRegressor:
         """The same with another lambda of (19)."""
         return replace(self, config=replace(self.config, trusted_variance=trusted_variance))
-
-    def _distances(self, x: FloatArray) -> FloatArray:
-        """(sum of N_k,) squared, from x (F,) to all clusters' examples: one product."""
-        inputs, squares = self._inputs
-        out: FloatArray = np.maximum(squares + x @ x - 2.0 * (inputs @ x), 0.0)
-        return out
-
-    @cached_property
-    def _inputs(self) -> tuple[FloatArray, FloatArray]:
-        inputs = np.concatenate([cluster.examples.inputs for cluster in self.clusters])
-        return inputs, np.sum(inputs**2, axis=1)
-
-    @cached_property
-    def _ends(self) -> FloatArray:
-        return np.cumsum([len(cluster.examples.inputs) for cluster in self.clusters])[:-1]
 
 
 def fit_regressor(
