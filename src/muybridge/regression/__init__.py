@@ -28,7 +28,7 @@ with `camera` that of the mask's picture, reduced as the mask is.
 
 from muybridge.regression.calibration import Calibration, calibrate_lambda
 from muybridge.regression.cluster_regression import RegressionConfig
-from muybridge.regression.clusters import cluster_poses
+from muybridge.regression.clusters import ClusterConfig, cluster_poses
 from muybridge.regression.components import PoseComponents
 from muybridge.regression.descriptor import Descriptor, DescriptorConfig, describe
 from muybridge.regression.gate import GateConfig
@@ -42,6 +42,7 @@ __all__ = [
     "PRINTED_TRUSTED_VARIANCE",
     "WORKING",
     "Calibration",
+    "ClusterConfig",
     "Config",
     "Descriptor",
     "DescriptorConfig",

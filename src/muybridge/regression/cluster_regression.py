@@ -101,6 +101,7 @@ class ClusterRegression:
     def __init__(self, examples: ClusterExamples) -> None:
         self.examples = examples
         self._changing = np.flatnonzero(examples.sd > 0)
+        self._squares = np.sum(examples.inputs**2, axis=1)
         outputs, hyper = examples.outputs[:, self._changing], list(examples.hyper)
         distances = squared_distances(examples.inputs, examples.inputs)
         self._processes: list[GaussianProcess | SharedScaleProcess]
@@ -113,12 +114,9 @@ class ClusterRegression:
         else:
             self._processes = [GaussianProcess(distances, y[:, None], own) for y, own in zip(outputs.T, hyper)]
 
-    def predict(self, distances: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Mean and variance, (D,) each, radians and their squares; not wrapped.
-
-        distances : (N,) float64
-            Squared, from the standardised descriptor to `examples.inputs`.
-        """
+    def predict(self, x: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Mean and variance, (D,) each, radians and their squares; not wrapped. x : (F,) float64, standardised."""
+        distances = np.maximum(self._squares + x @ x - 2.0 * (self.examples.inputs @ x), 0.0)
         mean, variance = self.examples.middle.copy(), np.full(len(self.examples.sd), CONSTANT_VARIANCE)
         if self._processes:
             found = [process.predict(distances) for process in self._processes]

@@ -1,6 +1,6 @@
 """What the regressor sees of a silhouette: the lowest frequencies of its cropped picture (Sedai 2013, section III-A).
 
-The silhouette is cut out by its box and brought to 64 x 128 pixels; of that picture's discrete cosine transform (1) the
+The silhouette's box is cut out and brought to 64 x 128 pixels; of that picture's discrete cosine transform (1) the
 8 x 8 lowest coefficients are kept. They do not change with the person's place and size in the picture, and assume a
 person who stands upright in it.
 

@@ -29,6 +29,7 @@ import numpy as np
 
 from muybridge.errors import InputError
 from muybridge.regression.cluster_regression import ClusterExamples, RegressionConfig
+from muybridge.regression.clusters import ClusterConfig
 from muybridge.regression.components import PoseComponents
 from muybridge.regression.descriptor import DescriptorConfig
 from muybridge.regression.gate import GateConfig, LogisticGate
@@ -189,5 +190,6 @@ def _config(values: dict[str, Any]) -> Config:
     values["descriptor"] = DescriptorConfig(**values["descriptor"])
     values["regression"] = RegressionConfig(**values["regression"])
     values["logistic"] = GateConfig(**values["logistic"])
-    values["splits"] = tuple(values["splits"])
+    clusters = values["clusters"]
+    values["clusters"] = ClusterConfig(tuple(clusters["facing"]), tuple(clusters["splits"]), clusters["first"])
     return Config(**values)

@@ -14,7 +14,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
-from functools import cached_property
 from typing import Literal
 
 import numpy as np
@@ -22,9 +21,10 @@ from threadpoolctl import threadpool_limits
 
 from muybridge.errors import InputError
 from muybridge.filters.particles import FloatArray
+from muybridge.regression import clusters as clusters_module
 from muybridge.regression import descriptor as descriptors_module
 from muybridge.regression.cluster_regression import ClusterExamples, ClusterRegression, RegressionConfig, learn
-from muybridge.regression.clusters import PRINTED_SPLITS, cluster_poses
+from muybridge.regression.clusters import ClusterConfig, cluster_poses
 from muybridge.regression.components import PoseComponents
 from muybridge.regression.descriptor import DescriptorConfig
 from muybridge.regression.gate import GateConfig, LogisticGate, by_variance, fit_gate
@@ -36,7 +36,7 @@ class Config:
     """Settings of a regressor."""
 
     descriptor: DescriptorConfig = descriptors_module.WORKING  # how its inputs are made
-    splits: tuple[int, ...] = (2, 2, 4, 4)  # clusters of those who face the camera, away, right, left
+    clusters: ClusterConfig = clusters_module.WORKING
     regression: RegressionConfig = RegressionConfig()
     gate: Literal["logistic", "variance"] = "logistic"
     logistic: GateConfig = GateConfig(landmarks=400)
@@ -54,7 +54,7 @@ class Config:
 
 PRINTED = Config(
     descriptor=descriptors_module.PRINTED,
-    splits=PRINTED_SPLITS,
+    clusters=clusters_module.PRINTED,
     regression=RegressionConfig(sharing="none", choice="random"),
     logistic=GateConfig(),
 )
@@ -89,37 +89,21 @@ class SilhouetteRegressor:
             expected = f"shape {self.centre.shape}, finite: as the regressor was trained"
             raise InputError("descriptor", expected=expected, got=f"shape {descriptor.shape}")
         x = (descriptor - self.centre) / self.scale
-        distances = np.split(self._distances(x), self._ends)
         if self.gate is None:
-            found = [cluster.predict(own) for cluster, own in zip(self.clusters, distances, strict=True)]
+            found = [cluster.predict(x) for cluster in self.clusters]
             weights = by_variance(np.array([variances for _, variances in found]))
             used = np.flatnonzero(weights >= self.config.negligible)
             found = [found[mode] for mode in used]
         else:
             weights = np.exp(self.gate.log_prob(x[None])[0])
             used = np.flatnonzero(weights >= self.config.negligible)
-            found = [self.clusters[mode].predict(distances[mode]) for mode in used]
+            found = [self.clusters[mode].predict(x) for mode in used]
         means, variances = (np.array(part) for part in zip(*found, strict=True))
         return PoseMixture(self.components, weights[used], means, variances)
 
     def with_trusted_variance(self, trusted_variance: float) -> SilhouetteRegressor:
         """The same with another lambda of (19)."""
         return replace(self, config=replace(self.config, trusted_variance=trusted_variance))
-
-    def _distances(self, x: FloatArray) -> FloatArray:
-        """(sum of N_k,) squared, from x (F,) to all clusters' examples: one product."""
-        inputs, squares = self._inputs
-        out: FloatArray = np.maximum(squares + x @ x - 2.0 * (inputs @ x), 0.0)
-        return out
-
-    @cached_property
-    def _inputs(self) -> tuple[FloatArray, FloatArray]:
-        inputs = np.concatenate([cluster.examples.inputs for cluster in self.clusters])
-        return inputs, np.sum(inputs**2, axis=1)
-
-    @cached_property
-    def _ends(self) -> FloatArray:
-        return np.cumsum([len(cluster.examples.inputs) for cluster in self.clusters])[:-1]
 
 
 def fit_regressor(
@@ -162,8 +146,8 @@ def fit_regressor(
         raise InputError("descriptors to learn from", expected="some that differ", got="all alike")
     inputs = (descriptors - centre) / scale
     with threadpool_limits(limits=1, user_api="blas"):
-        labels = cluster_poses(poses, np.asarray(facing, dtype=np.float64), components, config.splits)
-        count = int(labels.max()) + 1
+        labels = cluster_poses(poses, np.asarray(facing, dtype=np.float64), components, config.clusters)
+        count = config.clusters.count
         gate_rng, *generators = rng.spawn(count + 1)
 
         def learnt(cluster: int) -> ClusterRegression:

@@ -42,7 +42,7 @@ def training(scale: Scale) -> Training:
     seeds = range(FIRST_TRAINING_SEED, FIRST_TRAINING_SEED + (1 if scale.quick else 4))
     figures = figures[:3] if scale.quick else figures
     source = SceneSource(preset="humaneva", figures=figures, motions=MOTIONS, seeds=tuple(seeds), frames=120,
-                         every=12 if scale.quick else 6)  # fmt: skip
+                         every=4 if scale.quick else 6)  # fmt: skip
     return Training(scenes=(source,), seed=1)
 
 
