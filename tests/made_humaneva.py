@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from made_folders import HEIGHT, WIDTH, look_from, write_video
+from made_folders import HEIGHT, WIDTH, look_from
 from muybridge.datasets.humaneva_joints import SEGMENTS, SKIN_MARKERS
 from muybridge.io.trc import MarkerTrack
 
@@ -88,6 +88,26 @@ def numbered_pictures(count: int, level: int = 90, size: tuple[int, int] = (WIDT
     return pictures
 
 
+def empty_picture(level: int) -> np.ndarray:
+    """Nobody there."""
+    return np.full((HEIGHT, WIDTH, 3), level, np.uint8)
+
+
+def write_avi(path: Path, pictures: Sequence[np.ndarray], rate: int = 60) -> None:
+    """MPEG-4 part 2 in an AVI, as the data set's videos are, though not by XviD."""
+    import av
+
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with av.open(str(path), "w") as container:
+        stream = container.add_stream("mpeg4", rate=rate, options={"qscale": "2"})
+        stream.width, stream.height, stream.pix_fmt = pictures[0].shape[1], pictures[0].shape[0], "yuv420p"
+        for picture in pictures:
+            for packet in stream.encode(av.VideoFrame.from_ndarray(picture, format="bgr24")):
+                container.mux(packet)
+        for packet in stream.encode(None):
+            container.mux(packet)
+
+
 def number_of(picture: np.ndarray) -> int:
     """Which picture of `numbered_pictures` this is, counted from 0."""
     columns = picture.reshape(*picture.shape[:2], -1).mean(axis=(0, 2))
@@ -101,17 +121,16 @@ def humaneva_folder(
     pictures: int = 14,
     rows: int = 60,
     motion: str = "Walking_1",
-    track: MarkerTrack | None = None,
 ) -> Path:
     """DIR/S1 with one motion, and DIR/Background of two days, of which the second is the motion's."""
     person = folder / "S1"
     for number, name in enumerate(cameras):
-        write_video(person / "Image_Data" / f"{motion}_({name}).avi", numbered_pictures(pictures))
-        write_video(folder / "Background" / f"Background_1_({name}).avi", numbered_pictures(1, level=40))
-        write_video(folder / "Background" / f"Background_2_({name}).avi", numbered_pictures(1, level=92))
+        write_avi(person / "Image_Data" / f"{motion}_({name}).avi", numbered_pictures(pictures))
+        write_avi(folder / "Background" / f"Background_1_({name}).avi", [empty_picture(40)] * 5)
+        write_avi(folder / "Background" / f"Background_2_({name}).avi", [empty_picture(92)] * 5)
         write_lines(person / "Calibration_Data" / f"{name}.cal", cal_numbers(1 + number))
         write_lines(person / "Sync_Data" / f"{motion}_({name}).ofs", OFFSETS[name])
-    write_mat(person / "Mocap_Data" / f"{motion}.mat", made_track(rows) if track is None else track)
+    write_mat(person / "Mocap_Data" / f"{motion}.mat", made_track(rows))
     write_mat(person / "Mocap_Data" / "Static.mat", made_track(4))
     (person / "Mocap_Data" / "S1.mp").write_text(MEASURES)
     return folder
