@@ -21,6 +21,7 @@ import re
 import warnings
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -35,12 +36,13 @@ from muybridge.datasets.humaneva_frames import (
     read_offset,
     synchronise,
 )
-from muybridge.datasets.humaneva_joints import Person, humaneva_joints, torso_radius
 from muybridge.datasets.humaneva_mocap import find_mocap, measure, read_measures, read_mocap
 from muybridge.datasets.recording import CameraFiles, Recording
 from muybridge.errors import InputError
-from muybridge.evaluation.names import JOINTS
 from muybridge.io.run_folder import JointSeries
+
+if TYPE_CHECKING:
+    from muybridge.datasets.humaneva_joints import Person
 
 CAMERA = re.compile(r"^(.+)_\((C|BW)(\d+)\)$")
 SENSIBLE_HEIGHT = (1.2, 2.3)
@@ -229,6 +231,8 @@ def _unlike(one: np.ndarray, other: np.ndarray) -> float:
 
 def _reference(person: Path, motion: str, synchrony: Synchrony, count: int) -> tuple[JointSeries | None, int]:
     """The motion capture at the cameras' frames, and how many of them it covers."""
+    from muybridge.datasets.humaneva_joints import JOINTS, humaneva_joints
+
     folder = person / "Mocap_Data"
     path = find_mocap(folder, motion)
     if path is None:
@@ -245,6 +249,8 @@ def _reference(person: Path, motion: str, synchrony: Synchrony, count: int) -> t
 
 
 def _measured(person: Path) -> Person:
+    from muybridge.datasets.humaneva_joints import Person, torso_radius
+
     folder = person / "Mocap_Data"
     static, measures = find_mocap(folder, "Static"), folder / f"{person.name}.mp"
     if static is None:
