@@ -1,8 +1,8 @@
-"""Calibrations as in HumanEva and bodytrack: one `.cal` file a camera, 25 numbers, millimetres.
+"""Calibrations as in HumanEva and bodytrack: one `.cal` file a camera, 22 or 25 numbers, millimetres.
 
-In order: fx fy, cx cy, skew, k1 k2 p1 p2 k3, R by rows, T, Rodrigues vector. X_cam = R X + T. The vector says again
-what R says and is used to notice a file in another order. The skew is that of the MATLAB calibration toolbox, which
-wrote these files: K[0, 1] = skew fx.
+In order: fx fy, cx cy, skew, k1 k2 p1 p2 k3, R by rows, T, and in bodytrack a Rodrigues vector. X_cam = R X + T. The
+vector says again what R says and is used to notice a file in another order. The skew is that of the MATLAB calibration
+toolbox, which wrote these files: K[0, 1] = skew fx.
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ from muybridge.errors import InputError
 
 USUAL_SIZE = (640, 480)  # of both collections; the file itself names none
 AGREEMENT = 1e-3  # between R and the Rodrigues vector
+COUNTS = (22, 25)  # of numbers in a file: HumanEva, bodytrack
 
 
 def read_cal(paths: Sequence[Path], unit: str | None = None, size: tuple[int, int] | None = None) -> list[Camera]:
@@ -29,10 +30,10 @@ def read_cal(paths: Sequence[Path], unit: str | None = None, size: tuple[int, in
 
 def _camera(path: Path, name: str, size: tuple[int, int] | None) -> Camera:
     what = f"calibration {path}"
-    values = numbers(what, read_text(path).split(), 25)
+    values = numbers(what, read_text(path).split(), *COUNTS)
     (fx, fy, cx, cy, skew), distortion = values[:5], values[5:10]
     rotation = nearest_rotation(f"{what}: R", values[10:19].reshape(3, 3))
-    off = float(np.abs(rotation - rotation_from_vector(values[22:])).max())
+    off = float(np.abs(rotation - rotation_from_vector(values[22:])).max()) if len(values) > 22 else 0.0
     if not off <= AGREEMENT:
         raise InputError(
             what,

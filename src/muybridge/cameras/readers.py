@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from muybridge.cameras._reading import read_text
-from muybridge.cameras.cal import read_cal
+from muybridge.cameras.cal import COUNTS, read_cal
 from muybridge.cameras.json_format import read_json
 from muybridge.cameras.model import Camera, Rig
 from muybridge.cameras.opencv_toml import read_opencv_toml
@@ -132,6 +132,6 @@ def _format_of(path: Path) -> str:
     for beginning, kind in (("%YAML", "yaml"), ("<", "qualisys"), ("{", "json"), ("[", "toml")):
         if text.startswith(beginning):
             return kind
-    if len(text.split()) == 25:
+    if len(text.split()) in COUNTS:
         return "cal"
     raise InputError(f"calibration {path}", expected="one of: " + "; ".join(FORMATS.values()), got="another format")

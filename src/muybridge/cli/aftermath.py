@@ -28,7 +28,7 @@ def write_overlays(job: Job, out: Path, reporting: Reporting) -> list[Path]:
     for camera in job.cameras:
         try:
             with (
-                open_pictures(camera.pictures, camera.frame_rate) as pictures,
+                open_pictures(camera.pictures, camera.frame_rate, frames=camera.frames) as pictures,
                 reporting.progress(f"overlay {camera.name}") as progress,
             ):
                 tell = partial(_tell, progress, _frames_to_draw(job, pictures.frame_count))

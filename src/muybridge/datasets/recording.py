@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from muybridge.cameras import Rig
 from muybridge.errors import InputError
 
+if TYPE_CHECKING:
+    from muybridge.io.run_folder import JointSeries
+
 JOB_FILE = "JOB.toml"
 CAMERAS_FILE = "cameras.json"
+REFERENCE_FILE = "reference.csv"
 
 
 @dataclass(frozen=True)
@@ -23,6 +28,10 @@ class CameraFiles:
     """A video or a pattern; white is the person."""
     plate: Path | None = None
     """A picture of the empty scene, of the pictures' size."""
+    empty: Path | None = None
+    """Or a video or a folder of it."""
+    frames: tuple[int, int] | None = None
+    """First and last picture that belong to the recording, both included, from 0; None is all."""
 
 
 @dataclass(frozen=True)
@@ -48,6 +57,8 @@ class Recording:
     """A file with the first pose."""
     reference: Path | None = None
     """Another measurement of the same motion: TRC or truth_joints.csv."""
+    truth: JointSeries | None = None
+    """Or the joints themselves, where no file has them as they are needed; written beside the job."""
     frames: tuple[int, int] | None = None
     """First and last frame of interest, both included, counted from 0; None is all."""
 
@@ -58,7 +69,7 @@ class Recording:
 
 
 def write_recording_job(recording: Recording, folder: Path | str) -> str:
-    """Write `JOB.toml` into `folder`, with `cameras.json` beside it where the calibration had to be corrected.
+    """Write `JOB.toml` into `folder`; beside it `cameras.json` and `reference.csv` where no file has what they have.
 
     Returns
     -------
@@ -68,12 +79,16 @@ def write_recording_job(recording: Recording, folder: Path | str) -> str:
     from muybridge.cameras.json_format import write_rig
     from muybridge.io import job as jobs
     from muybridge.io.disk import make_folder
+    from muybridge.io.run_folder import write_joints
 
     folder = make_folder(Path(folder).absolute())
     calibration = recording.calibration
     if not calibration:
         calibration = (folder / CAMERAS_FILE,)
         write_rig(calibration[0], recording.rig)
+    if recording.truth is not None:
+        write_joints(folder / REFERENCE_FILE, recording.truth)
+        recording = replace(recording, reference=folder / REFERENCE_FILE)
     job = recording_job(recording, calibration)
     jobs.write(folder / JOB_FILE, job)
     return (folder / JOB_FILE).read_text(encoding="utf-8")
@@ -110,15 +125,20 @@ def _body_input(recording: Recording):
 
 
 def _camera_input(camera: CameraFiles, frame_rate: float | None):
-    """Masks win over a plate: whoever made them knew more."""
+    """Masks win over a plate and over a video of the empty scene: whoever made them knew more."""
     from muybridge.io import job as jobs
     from muybridge.io.image_sequence import is_image_pattern
 
-    use_plate = camera.plate is not None and camera.masks is None
+    background = None
+    if camera.masks is None and camera.plate is not None:
+        background = jobs.BackgroundInput(kind="plate", file=camera.plate)
+    elif camera.masks is None and camera.empty is not None:
+        background = jobs.BackgroundInput(kind="gaussian", file=camera.empty)
     return jobs.CameraInput(
         name=camera.name,
         pictures=camera.pictures,
         masks=camera.masks,
-        background=jobs.BackgroundInput(kind="plate", file=camera.plate) if use_plate else None,
+        background=background,
         frame_rate=frame_rate if is_image_pattern(camera.pictures) else None,
+        frames=camera.frames,
     )

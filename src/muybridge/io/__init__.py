@@ -13,6 +13,7 @@
 `asf_amc`              `read_amc`: Acclaim's skeletons and motion, as CMU publishes them
 `bvh`                  `read_bvh`: Biovision's
 `trc`                  marker tables for OpenSim and its kin
+`c3d`                  `read_c3d`: marker files of laboratories, by the optional package ezc3d
 `disk`                 `disk_errors`, `replace_file`: a full disk is one line; whole files or none
 `prefetch`             `prefetched`: decode ahead in a thread
 =====================  ==============================================================================

@@ -71,6 +71,11 @@ class CameraInput(Table, frozen=True):
     background: BackgroundInput | None = None
     frame_rate: Positive | None = None
     """Frames a second, for picture patterns; a video has its own timestamps."""
+    frames: FrameRange | None = None
+    """The part of pictures and masks that is used; frame 0 of the job is the first of them. All where absent."""
+
+    def __post_init__(self) -> None:
+        _check_range(self.frames, "frames")
 
 
 class BodyInput(Table, frozen=True):

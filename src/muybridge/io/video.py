@@ -25,6 +25,7 @@ __all__ = [
     "MASK_THRESHOLD",
     "ImageSequence",
     "MaskSource",
+    "PictureRange",
     "PictureSource",
     "VideoReader",
     "open_masks",
@@ -41,10 +42,14 @@ class PictureSource(Protocol):
     """What every reader of pictures offers. Pictures are (H, W, 3) uint8 BGR, grey (H, W), or masks (H, W) bool."""
 
     name: str
-    damage: str
     frame_rate: float
     size: tuple[int, int]
     timestamps: np.ndarray
+
+    @property
+    def damage(self) -> str:
+        """What is wrong with the source, in one line; empty where nothing is."""
+        ...
 
     @property
     def frame_count(self) -> int:
@@ -71,7 +76,12 @@ class PictureSource(Protocol):
 
 
 def open_pictures(
-    path_or_pattern: str | Path, frame_rate: float | None = None, *, colour: bool = True, threads: int = 1
+    path_or_pattern: str | Path,
+    frame_rate: float | None = None,
+    *,
+    colour: bool = True,
+    threads: int = 1,
+    frames: tuple[int, int] | None = None,
 ) -> PictureSource:
     """Open a video file, an image pattern (`image%04d.bmp`, `*.png`), a folder of images or one image.
 
@@ -84,10 +94,70 @@ def open_pictures(
         True gives (H, W, 3) uint8 BGR, False grey (H, W) uint8.
     threads : int
         Decoder threads for a video; 0 lets FFmpeg choose.
+    frames : (first, last), optional
+        The part to read, both included, see `PictureRange`; all where absent.
     """
+    pictures: PictureSource
     if is_image_pattern(path_or_pattern):
-        return ImageSequence(path_or_pattern, frame_rate, colour=colour)
-    return VideoReader(path_or_pattern, threads=threads, colour=colour)
+        pictures = ImageSequence(path_or_pattern, frame_rate, colour=colour)
+    else:
+        pictures = VideoReader(path_or_pattern, threads=threads, colour=colour)
+    return pictures if frames is None else PictureRange(pictures, *frames)
+
+
+class PictureRange:
+    """Frames `first` to `last` of a source as a source of their own: frame 0, at second 0, is the first of them.
+
+    For cameras that were started one after another: frame k of one range is frame k of the others.
+    """
+
+    def __init__(self, pictures: PictureSource, first: int, last: int) -> None:
+        if not 0 <= first <= last < pictures.frame_count:
+            expected = f"a range within 0 to {pictures.frame_count - 1}"
+            raise InputError(f"{pictures.name}: frames", expected=expected, got=f"{first} to {last}")
+        self.pictures, self.first, self.last = pictures, first, last
+        self.name, self.size, self.frame_rate = pictures.name, pictures.size, pictures.frame_rate
+        self.timestamps = pictures.timestamps[first : last + 1] - pictures.timestamps[first]
+        self.timestamps.flags.writeable = False
+
+    @property
+    def damage(self) -> str:
+        """What is wrong with the source; empty where nothing is."""
+        return self.pictures.damage
+
+    @property
+    def frame_count(self) -> int:
+        """Frames in the range."""
+        return self.last - self.first + 1
+
+    def __len__(self) -> int:
+        return self.frame_count
+
+    def __iter__(self) -> Iterator[tuple[int, float, np.ndarray]]:
+        return self.frames()
+
+    def frames(self, start: int = 0) -> Iterator[tuple[int, float, np.ndarray]]:
+        """Yield (index, time in seconds, picture) from frame `start` of the range to its end."""
+        for index, _, picture in self.pictures.frames(self.first + start) if start < self.frame_count else ():
+            if index > self.last:
+                return
+            yield index - self.first, float(self.timestamps[index - self.first]), picture
+
+    def read(self, index: int) -> np.ndarray:
+        """The picture of one frame of the range."""
+        if not 0 <= index < self.frame_count:
+            raise InputError(f"{self.name}: frame number", expected=f"0 to {self.frame_count - 1}", got=str(index))
+        return self.pictures.read(self.first + index)
+
+    def close(self) -> None:
+        """Give the files back."""
+        self.pictures.close()
+
+    def __enter__(self) -> PictureRange:
+        return self
+
+    def __exit__(self, *exc: object) -> None:
+        self.close()
 
 
 class MaskSource:
@@ -140,12 +210,13 @@ def open_masks(
     *,
     threshold: int = MASK_THRESHOLD,
     threads: int = 1,
+    frames: tuple[int, int] | None = None,
 ) -> MaskSource:
-    """Open masks kept as images or as a video, white on black."""
+    """Open masks kept as images or as a video, white on black; `frames` as in `open_pictures`."""
     if not 0 <= threshold < 255:
         raise InputError(f"{path_or_pattern}: mask threshold", expected="0 to 254", got=str(threshold))
     pictures = open_pictures(path_or_pattern, frame_rate, colour=False, threads=threads)
     if isinstance(pictures, ImageSequence) and threshold > 0 and pictures.read(0).max() == 1:
         remedy = "give threshold=0 if 1 means foreground"
         raise InputError(f"{path_or_pattern}: masks", expected="values 0 and 255", got="0 and 1", remedy=remedy)
-    return MaskSource(pictures, threshold)
+    return MaskSource(pictures if frames is None else PictureRange(pictures, *frames), threshold)

@@ -146,14 +146,14 @@ def open_eyes(job: Job, rig: Rig, reductions: tuple[int, ...], with_pictures: bo
     try:
         for entry, camera, reduction in zip(job.cameras, rig, reductions, strict=True):
             if entry.masks is not None:
-                _add_source(eyes, open_masks(entry.masks, entry.frame_rate), camera)
+                _add_source(eyes, open_masks(entry.masks, entry.frame_rate, frames=entry.frames), camera)
                 eyes.eyes.append(Eye(camera, reduction, None))
             else:
-                _add_source(eyes, open_pictures(entry.pictures, entry.frame_rate), camera)
+                _add_source(eyes, open_pictures(entry.pictures, entry.frame_rate, frames=entry.frames), camera)
                 eyes.eyes.append(Eye(camera, reduction, build_segmenter(entry, reduction)))
         for place, (entry, camera) in enumerate(zip(job.cameras, rig, strict=True)) if with_pictures else ():
             if entry.masks is not None:
-                _add_source(eyes, open_pictures(entry.pictures, entry.frame_rate), camera)
+                _add_source(eyes, open_pictures(entry.pictures, entry.frame_rate, frames=entry.frames), camera)
                 place = len(eyes.sources) - 1
             eyes.shown.append(place)
     except BaseException:
