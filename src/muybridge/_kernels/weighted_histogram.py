@@ -31,13 +31,10 @@ def _fill_one(image, x, y, half_width, half_height, out):
         for column in range(max(0, math.ceil(x - span)), min(width, math.floor(x + span) + 1)):
             dx = column - x
             weight = 1.0 - (dx * dx + dy * dy) / reach
-            pixel = image[row, column]
-            first, second, third = (
-                np.int64(pixel[0]) >> _SHIFT,
-                np.int64(pixel[1]) >> _SHIFT,
-                np.int64(pixel[2]) >> _SHIFT,
-            )
-            out[(first * SIDE + second) * SIDE + third] += weight
+            u = np.int64(0)
+            for channel in range(3):
+                u = u * SIDE + (np.int64(image[row, column, channel]) >> _SHIFT)
+            out[u] += weight
             total += weight
     if total > 0.0:
         for u in range(BINS):

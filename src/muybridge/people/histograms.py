@@ -82,8 +82,8 @@ class BinMap:
     def equalising(cls, pixels: NDArray[np.uint8]) -> BinMap:
         """The edges that spread a region's pixels (..., 3) uint8 evenly over the bins.
 
-        A value goes where the middle of its share of the cumulative histogram lies: a flat region's has a bin of its own,
-        and there are others for what is darker and what is brighter.
+        A value goes where the middle of its share of the cumulative histogram lies: that of a flat region has a bin of
+        its own, and there are others for what is darker and what is brighter.
         """
         values = np.asarray(pixels).reshape(-1, CHANNELS)
         if not len(values):

@@ -1,6 +1,7 @@
 """The colour likelihood to compare with, of Nummiaro, Koller-Meier and Van Gool (2003).
 
-"An adaptive color-based particle filter", Image and Vision Computing 21; Zhao (2009) restates it in (6.1), (6.2). One 8 x 8 x 8 histogram of an upright ellipse, pixels weighed by 1 - r^2, compared by the Bhattacharyya coefficient.
+"An adaptive color-based particle filter", Image and Vision Computing 21; restated by Zhao (2009) in (6.1) and (6.2).
+One 8 x 8 x 8 histogram of an upright ellipse, pixels weighed by 1 - r^2, compared by the Bhattacharyya coefficient.
 
 ==========  ==============================================
 symbol      name
@@ -13,8 +14,9 @@ pi_T        NummiaroConfig.update_above
 ==========  ==============================================
 
 Differences from the paper: the state is `people.box`'s, whose width and height are twice the half axes Hx and Hy,
-instead of one with a change of scale. From Zhao's restatement: the region is the paper's ellipse and a = sqrt(Hx^2 + Hy^2) is
-made of half axes; he writes a rectangle and whole sides, with which no pixel would weigh less than 3/4.
+instead of one with a change of scale. From Zhao's restatement: the region is the paper's ellipse and
+a = sqrt(Hx^2 + Hy^2) is made of half axes; he writes a rectangle and whole sides, with which no pixel would weigh less
+than 3/4.
 
 Cost: O(pixels) a box.
 """
