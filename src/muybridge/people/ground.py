@@ -17,7 +17,7 @@ from muybridge.people.blobs import Blob
 
 FEWEST = 12  # regions; fewer say nothing about a line
 ROUNDS, TRIALS = 8, 300
-SPREAD = 0.1  # of the expected height, standard deviation: adults, and what a mask misses at head and feet
+SPREAD = 0.06  # of the expected height, standard deviation: adults, and what a mask misses at head and feet
 UPRIGHT = (0.15, 0.7)  # width over height of what may be one standing person
 
 

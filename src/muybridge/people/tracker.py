@@ -9,7 +9,7 @@ import numpy as np
 from muybridge.people.detect import detect
 from muybridge.people.box import BoxMotion, CountConfig, boxes_from_states, overlaps
 from muybridge.people.colour_likelihood import ColourConfig
-from muybridge.people.evidence import Evidence, ForegroundConfig
+from muybridge.people.evidence import Evidence, ForegroundConfig, Silhouette
 from muybridge.people.ground import GroundScale
 from muybridge.people.histograms import to_luma_chroma
 from muybridge.people.person import Frame, Person, follow, start
@@ -17,18 +17,19 @@ from muybridge.people.person import Frame, Person, follow, start
 
 @dataclass(frozen=True, kw_only=True)
 class TrackerConfig:
-    colour: ColourConfig = ColourConfig(spread=0.3)
+    colour: ColourConfig = ColourConfig(spread=0.6)
     foreground: ForegroundConfig = ForegroundConfig()
     counts: CountConfig = CountConfig()
     confirm: int = 4
     patience: int = 8
     patience_hidden: int = 25
     least: float = 0.45
+    smallest: float = 45.0
     clear: float = 0.1
 
 
 class PeopleTracker:
-    def __init__(self, picture_size, background, ground, config=None, seed=0):
+    def __init__(self, picture_size, background, ground, config=None, seed=0, hidden=None, silhouette=None):
         self.config = config or TrackerConfig()
         self.size, self.ground = picture_size, ground
         self.background = to_luma_chroma(background)
@@ -37,10 +38,12 @@ class PeopleTracker:
         self.people: list[Person] = []
         self.gone: list[Person] = []
         self.count = 0
+        self.hidden_mask = hidden
+        self.silhouette = silhouette or Silhouette.flat()
 
     def step(self, number, picture, mask):
         cfg = self.config
-        frame = Frame(to_luma_chroma(picture), self.background, Evidence(mask, cfg.foreground))
+        frame = Frame(to_luma_chroma(picture), self.background, Evidence(mask, cfg.foreground, self.silhouette, self.hidden_mask))
         order = sorted(self.people, key=lambda p: (not p.confirmed, -(p.box[1] + p.box[5] + p.box[3] / 2)))
         for i, p in enumerate(order):
             behind = [q.box + np.r_[q.box[4:], 0, 0, 0, 0] for q in order[i + 1 :]]
@@ -54,7 +57,7 @@ class PeopleTracker:
             limit = cfg.patience_hidden if p.visible < 0.4 else cfg.patience
             if not p.confirmed:
                 limit = 1
-            if p.unseen + p.hidden > limit:
+            if p.unseen + p.hidden > limit or self.ground.height(p.box[1:2] + p.box[3] / 2)[0] < 0.95 * cfg.smallest:
                 self.people.remove(p)
                 self.gone.append(p)
         self._births(number, frame, mask)
@@ -90,12 +93,12 @@ class PeopleTracker:
 
     def _births(self, number, frame, mask):
         cfg = self.config
-        values = frame.evidence.values
+        weights = frame.evidence.weights
         for p in self.people:
             l, t, w, h = boxes_from_states(p.box[None])[0]
             l, t, w, h = l - cfg.clear * w, t - cfg.clear * h, (1 + 2 * cfg.clear) * w, (1 + 2 * cfg.clear) * h
-            values[max(0, round(t)) : max(0, round(t + h)), max(0, round(l)) : max(0, round(l + w))] = 0
-        for box, score in detect(values, None, self.ground, cfg.least):
+            weights[max(0, round(t)) : max(0, round(t + h)), max(0, round(l)) : max(0, round(l + w))] = 0
+        for box, score in detect(mask, weights, self.silhouette, cfg.foreground.outside, self.ground, cfg.least, smallest=cfg.smallest):
             self.count += 1
             p = start(self.rng, self.count, number, box, frame, self.motion, cfg.colour)
             p.track.append((number, box.copy(), 1.0))
