@@ -1,60 +1,71 @@
+"""People whom nobody follows yet: the box of the expected size that explains most foreground, then the next.
+
+Every place on a grid of feet is tried. Where two people touch, the second is found in what the first leaves unexplained,
+whether or not there is a valley between them; `blobs` needs one.
+"""
+
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
+from numpy.typing import NDArray
 
 from muybridge._kernels.occupancy import fill_sums, silhouette_scores
-from muybridge.people.evidence import core
+from muybridge.filters.particles import FloatArray
+from muybridge.people.evidence import Evidence
+from muybridge.people.ground import GroundScale
 
-SHOWN = 0.4  # share of a box that must be visible
-_GRID = {}
-
-def grid(shape, ground, step, smallest):
-    key = shape, ground, step, smallest
-    if key not in _GRID:
-        height, width = shape
-        states = []
-        for foot in np.arange(step, height + step, step) - 0.5:
-            h = float(ground.height(np.array([foot]))[0])
-            if h < smallest:
-                continue
-            w = ground.aspect * h
-            xs = np.arange(0, width, step, dtype=float)
-            states.append(np.column_stack([xs, np.full(len(xs), foot - h / 2), np.full(len(xs), w), np.full(len(xs), h)]))
-        states = np.concatenate(states)
-        _GRID[key] = states, states[:, 2] * states[:, 3]
-    return _GRID[key]
+STEP = 3  # pixels between places
+SHOWN = 0.4  # share of a box that is reckoned with at least: a strip that shows is not a person
+FILLED = 0.2  # share of foreground below which a place is not looked at closer
+MOST = 30  # people found in one frame
 
 
-def detect(mask, weights, silhouette, outside, ground, least: float, step: int = 3, most: int = 20, smallest=40.0):
-    """Boxes (6,) with their mean evidence per visible pixel, best first."""
-    found = []
-    mask = mask & (weights > 0)
-    if mask.sum() < 100:
-        return found
-    weights = weights.copy()
-    height, width = mask.shape
-    states, area = grid(mask.shape, ground, step, smallest)
-    table = np.empty((height + 1, width + 1, 2))
-    one = np.ones((1, 1))
-    gain, cost = silhouette.gains(outside)
-    for _ in range(most):
-        fill_sums(mask, weights, table)
-        full, empty = np.empty(len(states)), np.empty(len(states))
-        silhouette_scores(table, 0, 0, states, one, 0 * one, full)
-        k = np.flatnonzero(full > 0.2 * area * SHOWN)
-        if not len(k): break
-        s = np.ascontiguousarray(states[k])
-        silhouette_scores(table, 0, 0, s, 0 * one, one, empty[k])
-        e = np.empty(len(k)); silhouette_scores(table, 0, 0, s, 0 * one, one, e)
-        score = np.empty(len(k)); silhouette_scores(table, 0, 0, s, gain, cost, score)
-        shown = full[k] + e
-        score /= np.maximum(shown, SHOWN * area[k])
-        rank = np.minimum(score, 1.0) + 0.3 * np.minimum(1, shown / area[k])
-        best = int(np.argmax(np.where(score >= least, rank, -9)))
-        if score[best] < least:
+@dataclass(frozen=True, eq=False)
+class Places:
+    """Where people may stand: boxes (P, 4) float64, centre, width, height."""
+
+    boxes: FloatArray
+
+    @classmethod
+    def on(cls, ground: GroundScale, picture: tuple[int, int], smallest: float, step: int = STEP) -> Places:
+        """All over a picture (width, height) where people are expected to be at least so many pixels tall."""
+        width, height = picture
+        feet, x = np.meshgrid(np.arange(step, height + 1, step) - 0.5, np.arange(0, width, step), indexing="ij")
+        boxes = ground.standing(x.ravel().astype(np.float64), feet.ravel())
+        return cls(np.ascontiguousarray(boxes[boxes[:, 3] >= smallest]))
+
+
+def find_standing(evidence: Evidence, places: Places, least: float) -> list[FloatArray]:
+    """Boxes (4,) of people in what the evidence leaves to be explained; each is explained before the next is sought.
+
+    least : float
+        Log likelihood ratio per pixel that shows; a person alone has about 1.
+    """
+    found: list[FloatArray] = []
+    table = np.empty((evidence.mask.shape[0] + 1, evidence.mask.shape[1] + 1, 2))
+    area = places.boxes[:, 2] * places.boxes[:, 3]
+    while len(found) < MOST and (evidence.mask & (evidence.weights > 0)).any():
+        fill_sums(evidence.mask, evidence.weights, table)
+        full, empty = (_sums(table, places.boxes, side) for side in (0, 1))
+        likely = np.flatnonzero(full > FILLED * SHOWN * area)
+        if not likely.size:
             break
-        state = np.r_[s[best], 0.0, 0.0]
-        found.append((state, float(score[best])))
-        weights[core(state, 1.0)] = 0
-        mask = mask & (weights > 0)
+        boxes = np.ascontiguousarray(places.boxes[likely])
+        ratio = np.empty(len(boxes))
+        silhouette_scores(table, 0, 0, boxes, evidence.gain, evidence.cost, ratio)
+        mean = ratio / np.maximum((full + empty)[likely], SHOWN * area[likely])
+        best = int(np.argmax(np.where(mean >= least, ratio / area[likely], -np.inf)))
+        if mean[best] < least:
+            break
+        found.append(boxes[best])
+        evidence.explain(boxes[best], share=1.0)
     return found
+
+
+def _sums(table: NDArray[np.float64], boxes: FloatArray, side: int) -> FloatArray:
+    """(P,) weighted pixels of foreground (side 0) or background (1) in each box."""
+    one, none, out = np.ones((1, 1)), np.zeros((1, 1)), np.empty(len(boxes))
+    silhouette_scores(table, 0, 0, boxes, *((one, none) if side == 0 else (none, one)), out)
+    return out

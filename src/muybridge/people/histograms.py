@@ -125,7 +125,7 @@ class CumulativeMap:
 
     def covers(self, hull: Hull, shape: tuple[int, ...]) -> bool:
         """Whether all of `hull` that lies in a picture of that shape is in the part."""
-        left, top, right, bottom = _inside(hull, shape)
+        left, top, right, bottom = inside(hull, shape)
         height, width = self.table.shape[0] - 1, self.table.shape[1] - 1
         empty = left == right or top == bottom
         fits = self.left <= left and self.top <= top and right <= self.left + width and bottom <= self.top + height
@@ -134,7 +134,7 @@ class CumulativeMap:
 
 def cumulative_map(image: NDArray[np.uint8], bins: BinMap, around: Hull | None = None) -> CumulativeMap:
     """(4.16) over the part `around` of a picture (H, W, 3) uint8, Y Cr Cb; None: all of it."""
-    left, top, right, bottom = _inside(around or (0, 0, image.shape[1], image.shape[0]), image.shape)
+    left, top, right, bottom = inside(around or (0, 0, image.shape[1], image.shape[0]), image.shape)
     part = np.ascontiguousarray(image[top:bottom, left:right])
     table = np.empty((part.shape[0] + 1, part.shape[1] + 1, WORDS), np.uint64)
     fill_table(part, bins.ones, table)
@@ -148,7 +148,7 @@ def count_histograms(image: NDArray[np.uint8], bins: BinMap, boxes: Boxes) -> ND
     return out
 
 
-def _inside(hull: Hull, shape: tuple[int, ...]) -> Hull:
+def inside(hull: Hull, shape: tuple[int, ...]) -> Hull:
     """What of it lies in a picture of that shape; without pixels where none does."""
     (height, width), (left, top, right, bottom) = shape[:2], hull
     left, top = min(max(left, 0), width), min(max(top, 0), height)
