@@ -16,12 +16,14 @@ from muybridge.people.box import HEIGHT, SPEED_X, X, Y, BoxMotion, CountConfig, 
 from muybridge.people.colour_likelihood import ColourConfig, ColourTarget, Picture
 from muybridge.people.evidence import Evidence, Together
 from muybridge.people.ground import GroundScale
+from muybridge.people.identity import Look
 
 FILTER = condensation.Config(estimate="mean", resampling="systematic", particles=600)
 """(4.5) is the mean; the comb adds less variance than (4.8), (4.9) with independent numbers."""
 START_SD, START_SPEED_SD = 1.0, 3.0  # pixels, pixels per frame: where somebody new is, and what speeds are tried
 TRUST_COLOUR = 0.6  # share of the box that must be visible: below, the histogram is of somebody else
 LEARN_COLOUR = 0.8
+ENOUGH_LOOKS = 4  # frames
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,17 +93,39 @@ class Person:
 
     identity: int
     body: Filtered
+    colour: ColourConfig
     confirmed: bool = False
     seen: int = 1
     unseen: int = 0
     hidden: int = 0
     doubled: int = 0
+    visible: float = 1.0
+    filled: float = 1.0
     sightings: list[Sighting] = field(default_factory=list)
+    look: Look | None = None
+    looks: int = 0
+    last_clear: Sighting | None = None
 
     @property
     def missing(self) -> int:
         """Frames in a row without a sight of them."""
         return self.unseen + self.hidden
+
+    @property
+    def is_known(self) -> bool:
+        """Whether their look was learnt from enough frames to tell them from others."""
+        return self.confirmed and self.looks >= ENOUGH_LOOKS
+
+    def remember(self, picture: Picture, number: int) -> None:
+        """Learn what they look like; only while they are clear to see."""
+        box = self.body.box
+        self.look = Look.learn(picture, box, self.colour) if self.look is None else self.look.updated(picture, box)
+        self.looks += 1
+        self.last_clear = self.sightings[-1]
+
+    def likeness(self, picture: Picture, other: Person) -> float:
+        """Squared distance of what they look like to what is seen where another is."""
+        return np.inf if self.look is None else self.look.distance(picture, other.body.box)
 
 
 def follow(

@@ -22,6 +22,7 @@ from muybridge.people.box import PRINTED_VARIANCES, BoxMotion, CountConfig, boxe
 from muybridge.people.colour_likelihood import ColourConfig, Picture
 from muybridge.people.detect import Places, find_standing
 from muybridge.people.evidence import Evidence, ForegroundConfig
+from muybridge.people.identity import Identities, IdentityConfig
 from muybridge.people.histograms import to_luma_chroma
 from muybridge.people.person import Filtered, Frame, Person, Sighting, feet, follow, nearness
 from muybridge.people.scene import Scene
@@ -36,6 +37,8 @@ class TrackerConfig:
     """Settings of the tracker; times are in seconds of the video."""
 
     colour: ColourConfig = ColourConfig(spread=0.6)
+    looks: ColourConfig = ColourConfig(update_rate=0.1)
+    identity: IdentityConfig = IdentityConfig()
     foreground: ForegroundConfig = ForegroundConfig()
     counts: CountConfig = CountConfig()
     blobs: BlobConfig = BlobConfig()  # where the ground's scale is not known
@@ -74,6 +77,7 @@ class PeopleTracker:
         self.people: list[Person] = []
         self.gone: list[Person] = []
         self._count = 0
+        self._identities = Identities(self.config.identity, frame_rate, scene.size)
         self._rate = frame_rate
         self._motion = BoxMotion.within(scene.size, self.config.variances)
         self._background = to_luma_chroma(scene.background)
@@ -87,6 +91,7 @@ class PeopleTracker:
         for rank, person in enumerate(order):
             self._follow(person, frame, [other.body.expected for other in order[rank + 1 :]])
         self._give_up()
+        self._identify(frame)
         self._welcome(frame)
 
     def tracks(self) -> BoxSeries:
@@ -99,6 +104,15 @@ class PeopleTracker:
         frames, ids, boxes, scores = zip(*rows) if rows else ((), (), np.zeros((0, 6)), ())
         return BoxSeries(np.array(frames, np.int64), np.array(ids, np.int64), boxes_from_states(np.array(boxes)),
                          np.array(scores, np.float64))  # fmt: skip
+
+    def _identify(self, frame):
+        people = [p for p in self.people if p.confirmed]
+        if not people:
+            return
+        B = boxes_from_states(np.array([p.body.box for p in people]))
+        o = (overlaps(B, B) - np.eye(len(B))).max(axis=1)
+        clear = {p for p, w in zip(people, o) if w < 0.05 and p.visible >= 0.8 and p.filled > 0.6 * self.scene.silhouette.mean and not p.missing}
+        self._identities.step(frame.picture, frame.number, people, clear, self.gone)
 
     def _frames(self, seconds: float) -> int:
         return max(1, round(seconds * self._rate))
@@ -113,6 +127,7 @@ class PeopleTracker:
             person.seen += 1
             person.unseen = person.hidden = 0
             person.confirmed |= person.seen >= self._frames(self.config.confirm_s)
+        person.visible, person.filled = visible, filled
         person.sightings.append(Sighting(frame.number, person.body.box, visible * filled, not person.missing))
         if not person.unseen:
             frame.evidence.explain(person.body.box)
@@ -155,7 +170,7 @@ class PeopleTracker:
         for box in self._newcomers(frame.evidence):
             self._count += 1
             body = Filtered.start(self.rng, box, frame, self._motion, self.config.colour)
-            person = Person(self._count, body)
+            person = Person(self._count, body, self.config.looks)
             person.sightings.append(Sighting(frame.number, body.box, 1.0, True))
             self.people.append(person)
 
