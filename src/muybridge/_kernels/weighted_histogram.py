@@ -31,9 +31,9 @@ def _fill_one(image, x, y, half_width, half_height, out):
         for column in range(max(0, math.ceil(x - span)), min(width, math.floor(x + span) + 1)):
             dx = column - x
             weight = 1.0 - (dx * dx + dy * dy) / reach
-            u = np.int64(0)
+            u = 0
             for channel in range(3):
-                u = u * SIDE + (np.int64(image[row, column, channel]) >> _SHIFT)
+                u = u * SIDE + (int(image[row, column, channel]) >> _SHIFT)
             out[u] += weight
             total += weight
     if total > 0.0:

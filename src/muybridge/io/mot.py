@@ -56,7 +56,7 @@ def _row(path: str | Path, number: int, line: str) -> list[float]:
         raise InputError(what, expected="frame,id,left,top,width,height,...", got=line.strip()[:60])
     row += [1.0] * (7 - len(row))
     if row[0] < 1 or row[0] != int(row[0]) or row[1] != int(row[1]) or abs(row[1]) > 2**53:
-        raise InputError(what, expected="a frame from 1 and an identity, whole numbers", got=f"{cells[0]} and {cells[1]}")
+        raise InputError(what, expected="whole numbers: a frame from 1, an identity", got=f"{cells[0]} and {cells[1]}")
     return row
 
 

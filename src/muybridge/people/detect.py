@@ -1,7 +1,7 @@
 """People whom nobody follows yet: the box of the expected size that explains most foreground, then the next.
 
-Every place on a grid of feet is tried. Where two people touch, the second is found in what the first leaves unexplained,
-whether or not there is a valley between them; `blobs` needs one.
+Every place on a grid of feet is tried. Where two people touch, the second is found in what the first leaves
+unexplained, whether or not there is a valley between them; `blobs` needs one.
 """
 
 from __future__ import annotations
@@ -30,9 +30,13 @@ class Places:
 
     @classmethod
     def on(cls, ground: GroundScale, picture: tuple[int, int], smallest: float, step: int = STEP) -> Places:
-        """All over a picture (width, height) where people are expected to be at least so many pixels tall."""
+        """All over a picture (width, height) where people are expected to be at least so many pixels tall.
+
+        Feet may be below the picture, by as much as leaves half of a person inside.
+        """
         width, height = picture
-        feet, x = np.meshgrid(np.arange(step, height + 1, step) - 0.5, np.arange(0, width, step), indexing="ij")
+        lowest = height + float(ground.height(height)) / 2
+        feet, x = np.meshgrid(np.arange(step, lowest, step) - 0.5, np.arange(0, width, step), indexing="ij")
         boxes = ground.standing(x.ravel().astype(np.float64), feet.ravel())
         return cls(np.ascontiguousarray(boxes[boxes[:, 3] >= smallest]))
 

@@ -1,9 +1,9 @@
 """What a frame's foreground says about boxes: a person fills a box as people do, and nothing is left around it.
 
-With p the share of foreground in a cell of a person's box (`silhouette`) and q outside, the log likelihood ratio of a box
-is the sum over its pixels of log p / q where there is foreground and of log (1 - p) / (1 - q) where there is none. What
-a nearer person or an occluder covers says nothing. Neighbouring pixels tell much the same, so that the sum counts as so
-many independent looks at a whole box.
+With p the share of foreground in a cell of a person's box (`silhouette`) and q outside, the log likelihood ratio of a
+box is the sum over its pixels of log p / q where there is foreground and of log (1 - p) / (1 - q) where there is none.
+What a nearer person or an occluder covers says nothing. Neighbouring pixels tell much the same, so that the sum counts
+as so many independent looks at a whole box.
 
 Not in Zhao (2009), where the foreground starts and restarts people, and between that they are followed by colour alone.
 """
@@ -123,7 +123,7 @@ class Together:
 
 
 def middle(state: FloatArray, share: float) -> Place:
-    """The rows of a box (>= 4,), and the middle `share` of its columns; what lies left of or above the picture is cut."""
+    """The rows of a box (>= 4,) and the middle `share` of its columns, from the picture's first ones on."""
     x, y, width, height = state[:4]
     _, (left, top, right, bottom) = pixel_boxes(np.array([[x, y, share * width, height]]))
     return slice(max(0, top), max(0, bottom)), slice(max(0, left), max(0, right))

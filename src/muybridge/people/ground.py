@@ -1,7 +1,7 @@
 """How tall a person is in the picture, by where the feet are: what a fixed camera over flat ground lets one expect.
 
 Over flat ground, and with the horizon level in the picture, a standing person's height in pixels is linear in the row
-of the feet. The line is fitted to regions of the foreground, most of which are one person each; the others are outliers.
+of the feet. The line is fitted to regions of the foreground: most are one person each, the others are outliers.
 
 Not in Zhao (2009), who sets thresholds by hand for each camera (5.1).
 """

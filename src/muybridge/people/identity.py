@@ -177,6 +177,7 @@ def exchange(a: Person, b: Person, frame: int) -> None:
     """Give each what the other was up to a frame: identity, look and sightings. Where they are now stays."""
     a.identity, b.identity = b.identity, a.identity
     a.look, b.look = b.look, a.look
+    a.parts = b.parts = None  # to be cut anew
     before = [[sighting for sighting in person.sightings if sighting.frame <= frame] for person in (a, b)]
     after = [[sighting for sighting in person.sightings if sighting.frame > frame] for person in (a, b)]
     a.sightings, b.sightings = before[1] + after[0], before[0] + after[1]

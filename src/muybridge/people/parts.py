@@ -1,4 +1,6 @@
-"""Head, torso and hip-leg: a person's region cut at two rows, each section shrunk to where its pixels are (Zhao 2009, 5.2).
+"""Head, torso and hip-leg: a person's region cut at two rows, each section shrunk to where its pixels are.
+
+Zhao (2009), section 5.2.
 
 ===============  ======================================
 symbol           name
@@ -10,7 +12,7 @@ C, S             centre and half the sides of a part's box
 ===============  ======================================
 
 Differences from the paper: the lines move within a reach, since a line that may go anywhere finds the belt of a coat or
-the hem of a skirt as readily as the neck; how much three sections differ is the sum of the two differences across lines.
+the hem of a skirt as readily as the neck; how much the sections differ is the sum of the differences across both lines.
 """
 
 from __future__ import annotations
@@ -94,4 +96,5 @@ def _shrunk(mask: NDArray[np.bool_], top: int, bottom: int, shrink: float) -> tu
     if not y.size:
         return None
     y = y + top
-    return float(x.mean()), float(y.mean()), max(1.0, 2 * shrink * float(x.std())), max(1.0, 2 * shrink * float(y.std()))
+    width, height = (max(1.0, 2 * shrink * float(values.std())) for values in (x, y))
+    return float(x.mean()), float(y.mean()), width, height

@@ -6,7 +6,7 @@ what they look like as silhouettes, and behind what they disappear.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -57,4 +57,6 @@ def describe(
     if ground is None:
         return Scene(background, occluders=drawn)
     occluders = find_occluders(masks, ground)
-    return Scene(background, ground, learn_silhouette(people, ground, size), occluders if drawn is None else occluders | drawn)
+    if drawn is not None:
+        occluders |= drawn
+    return Scene(background, ground, learn_silhouette(people, ground, size), occluders)

@@ -47,7 +47,7 @@ class Silhouette:
         return float(self.share.mean())
 
     def ratios(self, outside: float) -> tuple[FloatArray, FloatArray]:
-        """log p / q of a pixel of foreground and log (1 - p) / (1 - q) of background, (rows, columns); q is `outside`."""
+        """log p / q of foreground and log (1 - p) / (1 - q) of background, (rows, columns) a pixel; q is `outside`."""
         p = np.clip(self.share, LOWEST, HIGHEST)
         return np.log(p / outside), np.log((1 - p) / (1 - outside))
 
