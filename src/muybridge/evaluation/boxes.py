@@ -63,7 +63,7 @@ class BoxScores:
 
 def score_boxes(estimate: BoxSeries, truth: BoxSeries) -> BoxScores:
     """Scores of an estimate; truth with confidence 0 is left out. Frames run to the last one that either has."""
-    metrics = _metrics()
+    metrics = scorer()
     truth = truth.where(truth.confidence != 0)
     if not len(truth):
         raise InputError("truth for scoring", expected="boxes", got="none")
@@ -92,7 +92,8 @@ def overlaps(boxes: NDArray[np.float64], others: NDArray[np.float64]) -> NDArray
     return share
 
 
-def _metrics() -> Any:
+def scorer() -> Any:
+    """The scorer's metrics; InputError with the remedy where it is not installed."""
     try:
         from trackeval import metrics
     except ImportError as error:

@@ -20,7 +20,6 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from muybridge.errors import InputError
 from muybridge.filters.dynamics import Belief, GaussianWalk, reflect
@@ -140,12 +139,3 @@ def adapted_count(log_weights: FloatArray, config: CountConfig | None = None) ->
     entropy = -float((weights.values[some] * weights.log[some]).sum())
     share = entropy / np.log(count) if count > 1 else 1.0
     return int(np.clip(round(config.growth * count * share), config.fewest, config.most))
-
-
-def overlaps(boxes: FloatArray, others: FloatArray) -> NDArray[np.float64]:
-    """(N, M) intersection over union of boxes (N, 4) with others (M, 4): left, top, width, height; 0 of empty ones."""
-    a, b = np.atleast_2d(boxes)[:, None], np.atleast_2d(others)[None]
-    meet = np.minimum(a[..., :2] + a[..., 2:], b[..., :2] + b[..., 2:]) - np.maximum(a[..., :2], b[..., :2])
-    shared = np.maximum(meet, 0).prod(axis=-1)
-    union = np.maximum(a[..., 2:], 0).prod(axis=-1) + np.maximum(b[..., 2:], 0).prod(axis=-1) - shared
-    return np.where(union > 0, shared / np.maximum(union, 1e-12), 0.0)
