@@ -77,7 +77,7 @@ def draw_people(
     if parts is not None:
         first, last = np.searchsorted(parts.frames, (frame, frame + 1))
         for identity, box in zip(parts.ids[first:last], parts.boxes[first:last] * scale):
-            _rectangle(result, box, colour_of(int(identity)), 1)
+            _rectangle(result, box, colour_of(int(identity)), 1, shaded=False)
     return draw_label(result, f"frame {frame + 1}")
 
 
@@ -89,12 +89,14 @@ def colour_of(identity: int) -> tuple[int, int, int]:
     return round(255 * blue), round(255 * green), round(255 * red)
 
 
-def _rectangle(picture: np.ndarray, box: np.ndarray, colour: tuple[int, int, int], width: int) -> None:
+def _rectangle(
+    picture: np.ndarray, box: np.ndarray, colour: tuple[int, int, int], width: int, *, shaded: bool = True
+) -> None:
     import cv2
 
     left, top = np.rint(box[:2]).astype(int)
     right, bottom = np.rint(box[:2] + box[2:] - 1).astype(int)
-    for extra, shade in ((2, SHADE), (0, colour)):
+    for extra, shade in ((2, SHADE), (0, colour))[not shaded :]:
         cv2.rectangle(picture, (int(left), int(top)), (int(right), int(bottom)), shade, width + extra, cv2.LINE_AA)
 
 
