@@ -81,16 +81,29 @@ def picture_of(
 ) -> tuple[np.ndarray, np.ndarray]:
     """(picture, foreground) of a frame: the far ones first, sensor noise of 2 grey values."""
     picture, mask = empty.copy(), np.zeros(empty.shape[:2], bool)
-    there = [walker for walker in walkers if walker.box(frame) is not None]
-    for walker in sorted(there, key=lambda walker: walker.feet(frame)[1]):  # type: ignore[index]
-        colours = (SKIN, *CLOTHES[walker.clothes])
-        for rows, columns, kind in silhouette(walker.box(frame), abs(np.sin(0.5 * frame))):  # type: ignore[arg-type]
-            picture[rows, columns] = colours[kind]
-            mask[rows, columns] = True
+    for colours, part in _painted(walkers, frame):
+        picture[part[:2]] = colours[part[2]]
+        mask[part[:2]] = True
     if hidden is not None:
         picture[hidden], mask = empty[hidden], mask & ~hidden
     noise = np.random.default_rng([seed, frame]).normal(0, 2, picture.shape)
     return np.clip(picture + noise, 0, 255).astype(np.uint8), mask
+
+
+def mask_of(walkers: list[Walker], frame: int, hidden: np.ndarray | None = None) -> np.ndarray:
+    """The foreground alone, (H, W) bool."""
+    mask = np.zeros((HEIGHT, WIDTH), bool)
+    for _, part in _painted(walkers, frame):
+        mask[part[:2]] = True
+    return mask if hidden is None else mask & ~hidden
+
+
+def _painted(walkers: list[Walker], frame: int):
+    """(colours, part) of everybody who is there, the far ones first."""
+    there = [walker for walker in walkers if walker.box(frame) is not None]
+    for walker in sorted(there, key=lambda walker: walker.feet(frame)[1]):  # type: ignore[index]
+        for part in silhouette(walker.box(frame), abs(np.sin(0.5 * frame))):  # type: ignore[arg-type]
+            yield (SKIN, *CLOTHES[walker.clothes]), part
 
 
 def truth_of(walkers: list[Walker], frames: int) -> list[tuple[int, int, np.ndarray]]:

@@ -46,7 +46,7 @@ def test_a_piece_that_is_too_small_goes() -> None:
     mask[44:50, 45:65] = True
     # The valley is columns 45 to 53, all 6 high (54 is too near the side); its middle is 49.
     assert boxes(mask, BlobConfig(smallest=400, widest=1.0)) == [[10, 10, 39, 40]]
-    assert len(boxes(mask, BlobConfig(smallest=60, widest=1.0))) > 1  # negative control: the foot stays
+    assert len(boxes(mask, BlobConfig(smallest=20, widest=1.0))) == 5  # negative control: the foot stays, in four
 
 
 def test_a_block_without_a_valley_is_halved() -> None:

@@ -99,17 +99,19 @@ class Identities:
         self._memory = round(config.recall_s * frame_rate)
         self._stride = FASTEST / frame_rate
         self._meetings: dict[frozenset[Person], Meeting] = {}
-        self._likeness: dict[tuple[Person, Person], list[float]] = {}
+        self._likeness: dict[tuple[Person, int], list[float]] = {}
 
     def step(self, picture: Picture, number: int, people: list[Person], clear: set[Person], gone: list[Person]) -> None:
         """One frame, after everybody was followed. Exchanges and takes up identities; remembers looks of the clear."""
-        known = set(people)
+        known = {*people, *(lost for lost in gone if number - lost.sightings[-1].frame <= self._memory)}
         self._meetings = {pair: meeting for pair, meeting in self._meetings.items() if pair <= known}
         for a, b in combinations([person for person in people if person.is_known], 2):
-            if a in clear and b in clear:
-                self._compare(picture, a, b)
-            elif gap_between(a.body.box, b.body.box) < self.config.near:
+            if not (a in clear and b in clear) and gap_between(a.body.box, b.body.box) < self.config.near:
                 self._meet(number, a, b)
+        for pair in list(self._meetings):
+            followed = {person for person in pair if not person.lost}
+            if followed and followed <= clear:
+                self._compare(picture, *sorted(pair, key=lambda person: person.lost))
         uncertain = {person for pair in self._meetings for person in pair}
         for person in people:
             if person in clear and person not in uncertain:
@@ -125,34 +127,36 @@ class Identities:
             meeting.closest, meeting.gap = number, gap
 
     def _compare(self, picture: Picture, a: Person, b: Person) -> None:
-        """How much better an exchange would fit; decided after so many looks."""
-        pair = frozenset((a, b))
-        meeting = self._meetings.get(pair)
-        if meeting is None:
-            return
-        own = a.likeness(picture, a) + b.likeness(picture, b)
-        other = a.likeness(picture, b) + b.likeness(picture, a)
-        meeting.gains.append((own - other) / 2)
+        """How much better an exchange would fit those who are still followed, decided after so many looks.
+
+        Where b was lost meanwhile, a alone is compared: it may be b who is followed, and a who was lost.
+        """
+        meeting = self._meetings[frozenset((a, b))]
+        gain = a.likeness(picture, a) - b.likeness(picture, a)
+        if not b.lost:
+            gain = (gain + b.likeness(picture, b) - a.likeness(picture, b)) / 2
+        meeting.gains.append(gain)
         if len(meeting.gains) >= self.config.looks:
             if np.mean(meeting.gains) > self.config.margin:
                 exchange(a, b, meeting.closest)
-            del self._meetings[pair]
+            del self._meetings[frozenset((a, b))]
 
     def _recall(self, picture: Picture, number: int, person: Person, gone: list[Person]) -> None:
         """Whether somebody new is somebody lost: as many looks as for an exchange, then the most alike, if at all."""
-        if person.looks > self.config.looks + 1:
+        if number - person.sightings[0].frame > self._memory:
             return
-        candidates = [lost for lost in gone if self._may_be(person, lost, number)]
-        for lost in candidates:
-            self._likeness.setdefault((person, lost), []).append(lost.likeness(picture, person))
-        if person.looks < self.config.looks or not candidates:
-            return
-        distance = {lost: float(np.mean(self._likeness[person, lost])) for lost in candidates}
-        best = min(candidates, key=distance.__getitem__)
-        if distance[best] < self.config.alike:
+        distance = {}
+        for lost in gone:
+            if self._may_be(person, lost, number):
+                # By identity, which goes with the look: the lost one's may have been exchanged meanwhile.
+                values = self._likeness.setdefault((person, lost.identity), [])
+                values.append(lost.likeness(picture, person))
+                if len(values) >= self.config.looks:
+                    distance[lost] = float(np.mean(values[-self.config.looks :]))
+        best = min(distance, key=distance.__getitem__, default=None)
+        if best is not None and distance[best] < self.config.alike:
             take_up(person, best)
             gone.remove(best)
-        self._likeness = {pair: values for pair, values in self._likeness.items() if pair[0] is not person}
 
     def _may_be(self, person: Person, lost: Person, number: int) -> bool:
         """Seen last before the other was, not too long ago, not at a side, and near enough to have walked there."""
@@ -177,6 +181,7 @@ def exchange(a: Person, b: Person, frame: int) -> None:
     """Give each what the other was up to a frame: identity, look and sightings. Where they are now stays."""
     a.identity, b.identity = b.identity, a.identity
     a.look, b.look = b.look, a.look
+    a.last_clear, b.last_clear = b.last_clear, a.last_clear
     a.parts = b.parts = None  # to be cut anew
     before = [[sighting for sighting in person.sightings if sighting.frame <= frame] for person in (a, b)]
     after = [[sighting for sighting in person.sightings if sighting.frame > frame] for person in (a, b)]

@@ -29,6 +29,8 @@ def find_occluders(masks: Sequence[Mask], ground: GroundScale) -> Mask:
     for row, line in enumerate(heat):
         # The row crosses people at the middle of their height: their feet are half a height below.
         gap = int(REACH * ground.height(row + float(ground.height(row)) / 2)) | 1
-        around = cv2.morphologyEx(line[None], cv2.MORPH_CLOSE, np.ones((1, gap), np.uint8))[0]
+        # Zeros beyond the sides, so that the picture's edge does not stand for people on that side.
+        beyond = np.pad(line, gap)[None]
+        around = cv2.morphologyEx(beyond, cv2.MORPH_CLOSE, np.ones((1, gap), np.uint8))[0, gap:-gap]
         hidden[row] = (around >= LEAST) & (line <= SHARE * around)
     return cv2.morphologyEx(hidden, cv2.MORPH_OPEN, np.ones((3, 3), np.uint8)).astype(bool)

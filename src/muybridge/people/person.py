@@ -59,6 +59,7 @@ class Person:
     rng: np.random.Generator
     colour: ColourConfig
     confirmed: bool = False
+    lost: bool = False
     seen: int = 1
     unseen: int = 0
     hidden: int = 0

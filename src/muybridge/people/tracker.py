@@ -136,6 +136,8 @@ class PeopleTracker:
     def _give_up(self) -> None:
         """Those unseen for too long, those too far away, and one of two who are one."""
         leaving = {person for person in self.people if self._is_lost(person)} | self._double()
+        for person in leaving:
+            person.lost = True
         self.gone += [person for person in self.people if person in leaving]
         self.people = [person for person in self.people if person not in leaving]
 
