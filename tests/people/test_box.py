@@ -60,7 +60,9 @@ def kalman(observations: np.ndarray) -> np.ndarray:
     belief, measure = Belief.at_rest(np.zeros(6), np.full(6, 3.0)), np.eye(4, 6)
     for observation in observations:
         belief = FREE.carry(belief)
-        gain = belief.covariance @ measure.T @ np.linalg.inv(measure @ belief.covariance @ measure.T + SD**2 * np.eye(4))
+        gain = (
+            belief.covariance @ measure.T @ np.linalg.inv(measure @ belief.covariance @ measure.T + SD**2 * np.eye(4))
+        )
         mean = belief.mean + gain @ (observation - measure @ belief.mean)
         belief = replace(belief, mean=mean, covariance=(np.eye(6) - gain @ measure) @ belief.covariance)
     return belief.mean

@@ -15,7 +15,11 @@ HEIGHT, WIDTH = 100, 30
 def figure(neck: int, waist: int) -> tuple[np.ndarray, Blob]:
     """A full block of three colours at (40, 20) in a picture."""
     picture = np.full((150, 120, 3), 128, np.uint8)
-    for top, bottom, colour in ((0, neck, (200, 130, 120)), (neck, waist, (40, 200, 90)), (waist, HEIGHT, (90, 90, 210))):
+    for top, bottom, colour in (
+        (0, neck, (200, 130, 120)),
+        (neck, waist, (40, 200, 90)),
+        (waist, HEIGHT, (90, 90, 210)),
+    ):
         picture[20 + top : 20 + bottom, 40 : 40 + WIDTH] = colour
     return picture, Blob(40, 20, np.ones((HEIGHT, WIDTH), bool))
 

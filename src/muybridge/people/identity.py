@@ -171,7 +171,7 @@ class Identities:
 
 
 def gap_between(a: FloatArray, b: FloatArray) -> float:
-    """How far apart the feet of two boxes (>= 4,) are, in widths; up and down counts twice."""
+    """How far apart the feet of two boxes (>= 4,) are, in widths; half a height up or down counts as one."""
     across = abs(a[0] - b[0]) / (a[2] + b[2])
     along = abs(a[1] + a[3] / 2 - b[1] - b[3] / 2) / (a[3] + b[3])
     return float(2 * np.hypot(across, 2 * along))

@@ -17,7 +17,6 @@ from pathlib import Path
 from typing import Any, Protocol, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
 from muybridge.errors import InputError
 from muybridge.io._tables import override, replaced, unknown
@@ -57,8 +56,8 @@ class PeopleConfig:
     plate_moments: int = 60  # of those, for the median that is the empty scene
 
     def __post_init__(self) -> None:
-        if self.rows < 60 or not 1 <= self.plate_moments <= self.moments:
-            raise InputError("people", expected="rows from 60 and 1 <= plate_moments <= moments",
+        if self.rows < 60 or self.plate_moments < 1 or self.moments < 1:
+            raise InputError("people", expected="rows from 60, moments and plate_moments from 1",
                              got=f"{self.rows}, {self.plate_moments}, {self.moments}")  # fmt: skip
 
     def with_settings(self, settings: Sequence[str]) -> PeopleConfig:
@@ -135,7 +134,7 @@ def look_over(
     progress = progress or _ignore
     moments = _spread(len(pictures), config.moments)
     chosen = [moments[k] for k in _spread(len(moments), config.plate_moments)]
-    masks = Masks.train([_colour(reduce_image(pictures.read(index), factor)) for index in chosen], config.masks)
+    masks = Masks.train([reduce_image(pictures.read(index), factor) for index in chosen], config.masks)
     seen = []
     for count, index in enumerate(moments, start=1):
         seen.append(masks.apply(reduce_image(pictures.read(index), factor)))
@@ -165,12 +164,6 @@ def _spread(count: int, most: int) -> list[int]:
     return [int(index) for index in np.linspace(0, count - 1, min(count, most)).round()]
 
 
-def _colour(picture: NDArray[np.uint8]) -> NDArray[np.uint8]:
-    if picture.ndim != 3:
-        raise InputError("pictures", expected="a colour camera", got="grey pictures")
-    return picture
-
-
 def _reduced(mask: Mask | None, size: tuple[int, int], shape: tuple[int, ...]) -> Mask | None:
     """Drawn occluders at the size that is worked on; a pixel is hidden where most of it is."""
     if mask is None:
@@ -186,18 +179,19 @@ def _reduced(mask: Mask | None, size: tuple[int, int], shape: tuple[int, ...]) -
 
 def _replaced(config: Config, table: Mapping[str, Any], source: str) -> Config:
     """A frozen dataclass with fields replaced, those that are dataclasses themselves by their own tables."""
-    changes = {}
+    inner: dict[str, Any] = {}
+    plain: dict[str, Any] = {}
     for key, value in table.items():
         if not hasattr(config, key):
             raise unknown(source, key, [field.name for field in dataclasses.fields(config)])  # type: ignore[arg-type]
-        inner = getattr(config, key)
-        if isinstance(value, Mapping) and dataclasses.is_dataclass(inner):
-            changes[key] = _replaced(inner, value, f"{source} {key}")
-        elif isinstance(value, Mapping) or dataclasses.is_dataclass(inner):
+        here = getattr(config, key)
+        if isinstance(value, Mapping) and dataclasses.is_dataclass(here):
+            inner[key] = _replaced(here, value, f"{source} {key}")
+        elif isinstance(value, Mapping) or dataclasses.is_dataclass(here):
             raise InputError(f"{source} {key}", expected="KEY=VALUE of a single setting", got=str(value))
         else:
-            config = replaced(config, {key: value}, source)
-    return dataclasses.replace(config, **changes)  # type: ignore[type-var]
+            plain[key] = value
+    return dataclasses.replace(replaced(config, plain, source), **inner)  # type: ignore[type-var]
 
 
 def _ignore(done: int, total: int, message: str = "") -> None:
