@@ -16,7 +16,7 @@ CAVIAR = """<?xml version="1.0" encoding="UTF-8"?>
  <frame number="0"><objectlist>
   <object id="3"><orientation>90</orientation><box xc="50" yc="40" w="20" h="30"/><appearance>appear</appearance>
    <body><head xc="50" yc="28" size="5" evaluation="1"/></body>
-   <hypothesislist><hypothesis id="1" prev="1.0" evaluation="1.0"><movement>walking</movement></hypothesis></hypothesislist>
+   <hypothesislist><hypothesis id="1" prev="1.0"><movement>walking</movement></hypothesis></hypothesislist>
   </object>
   <object id="1"><box h="8" w="4" xc="10.5" yc="20"/></object>
  </objectlist>

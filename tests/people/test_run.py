@@ -22,9 +22,11 @@ from people.made import identities
 EMPTY = empty_scene()
 # Nobody stands: the median of the clip is the empty scene.
 WALKERS = [
-    Walker((10, 130), (310, 130), 0, 39, 0), Walker((310, 180), (10, 180), 5, 44, 1), Walker((10, 215), (310, 150), 20, 59, 2),
-]  # fmt: skip
-FRAMES = 60
+    Walker((10, 130), (310, 130), 0, 49, 0),
+    Walker((310, 180), (10, 180), 5, 54, 1),
+    Walker((10, 215), (310, 150), 15, 64, 2),
+]
+FRAMES = 65
 SETTINGS = [
     "tracker.smallest=30",
     "tracker.counts.most=200",

@@ -59,7 +59,7 @@ def test_parts_lie_on_the_body_in_their_order() -> None:
     assert box is not None
     middle = parts.boxes[rows, :2] + parts.boxes[rows, 2:] / 2
     shares = (middle - box[:2]) / box[2:]
-    # Drawn: head 0 to .16, trunk .15 to .55, the upper half of legs .52 to .76; a part's filter is off by a pixel or two.
+    # Drawn: head 0 to .16, trunk .15 to .55, the upper half of legs .52 to .76; a filter is off by a pixel or two.
     np.testing.assert_allclose(shares[:, 1], [0.08, 0.35, 0.64], atol=0.08)
     np.testing.assert_allclose(shares[:, 0], 0.5, atol=0.12)
     assert (parts.scores[rows] > 0.5).all()

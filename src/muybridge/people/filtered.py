@@ -15,7 +15,7 @@ from muybridge.people.evidence import Evidence
 
 FILTER = condensation.Config(estimate="mean", resampling="systematic", particles=600)
 """(4.5) is the mean; the comb adds less variance than (4.8), (4.9) with independent numbers."""
-START_SD, START_SPEED_SD = 1.0, 3.0  # pixels, pixels per frame: where somebody new is, and what speeds are tried
+START_SD = 1.0  # pixels: where somebody new is
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,11 +49,17 @@ class Filtered:
 
     @classmethod
     def start(
-        cls, rng: np.random.Generator, box: FloatArray, frame: Frame, motion: BoxMotion, colour: ColourConfig
+        cls,
+        rng: np.random.Generator,
+        box: FloatArray,
+        frame: Frame,
+        motion: BoxMotion,
+        colour: ColourConfig,
+        speed_sd: float,
     ) -> Filtered:
-        """All particles at one place (>= 4,), with velocities drawn at random (4.1.1)."""
+        """All particles at one place (>= 4,), with velocities drawn at random (4.1.1): `speed_sd`, pixels per frame."""
         mean = np.concatenate([box[:SPEED_X], np.zeros(2)])
-        sd = np.array([START_SD] * 4 + [START_SPEED_SD] * 2)
+        sd = np.array([START_SD] * 4 + [speed_sd] * 2)
         state = condensation.init(rng, mean, sd, FILTER, motion.lower, motion.upper)
         return cls(state, ColourTarget.learn(frame.picture, mean, colour))
 

@@ -21,6 +21,7 @@ from muybridge.people.parts import PartConfig, decompose
 
 PLACE_SD = 0.04  # of the body's height: how far a part moves on the body from frame to frame, and with the gait
 SIZE_SD = 0.15  # of its own size
+SPEED_SD = 0.04  # of the body's height per frame, at the start
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,7 +71,8 @@ class Parts:
         sides = np.array([body[2], body[3], body[2], body[3]])
         shares = (boxes[:, :4] - [body[0], body[1], 0, 0]) / sides
         rng = rng.spawn(1)[0]
-        filters = tuple(Filtered.start(rng, box, frame, motion, colour) for box in boxes)
+        speed_sd = SPEED_SD * float(body[3])
+        filters = tuple(Filtered.start(rng, box, frame, motion, colour, speed_sd) for box in boxes)
         return cls(filters, shares, rng)
 
     def step(self, body: FloatArray, frame: Frame, motion: BoxMotion, counts: CountConfig, trusted: bool) -> FloatArray:

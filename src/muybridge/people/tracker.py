@@ -34,6 +34,7 @@ from muybridge.people.tracks import Tracks, gathered
 
 HIDDEN = 0.3  # share of a box that can be seen; less is called hidden, not lost
 EMPTY, FULL = 0.4, 0.6  # of what a person fills: less, and nobody is there; more, and all of them is
+WALK = 0.6  # heights a second: standard deviation of speeds that are tried for somebody new; a brisk walk is 1
 SAME, APART = 0.6, 0.05  # intersection over union of boxes that may be one person; of people clear of each other
 
 
@@ -102,7 +103,7 @@ class PeopleTracker:
         order = sorted(self.people, key=nearness)
         for rank, person in enumerate(order):
             self._follow(person, frame, [other.body.expected for other in order[rank + 1 :]])
-        self._give_up()
+        self._give_up(frame)
         self._tell_apart(frame)
         self._welcome(frame)
 
@@ -133,9 +134,9 @@ class PeopleTracker:
         if not person.unseen:
             frame.evidence.explain(box)
 
-    def _give_up(self) -> None:
+    def _give_up(self, frame: Frame) -> None:
         """Those unseen for too long, those too far away, and one of two who are one."""
-        leaving = {person for person in self.people if self._is_lost(person)} | self._double()
+        leaving = {person for person in self.people if self._is_lost(person)} | self._double(frame.picture)
         for person in leaving:
             person.lost = True
         self.gone += [person for person in self.people if person in leaving]
@@ -150,8 +151,8 @@ class PeopleTracker:
         patience = self.config.patience_hidden_s if person.hidden else self.config.patience_s
         return person.missing > self._frames(patience)
 
-    def _double(self) -> set[Person]:
-        """Of two who had nearly the same box for too long, the one to give up: who was seen less."""
+    def _double(self, picture: Picture) -> set[Person]:
+        """Of two who had nearly the same box for too long, the one to give up: who looks less like what is there."""
         shared = self._shared(self.people)
         for person, most in zip(self.people, shared.max(axis=1, initial=0.0)):
             person.doubled = person.doubled + 1 if most > SAME else 0
@@ -159,6 +160,8 @@ class PeopleTracker:
             one, other = self.people[a], self.people[b]
             both = one.confirmed and other.confirmed
             if min(one.doubled, other.doubled) > (self._frames(self.config.doubled_s) if both else 2):
+                if one.is_known and other.is_known:
+                    return {max(one, other, key=lambda person: person.likeness(picture, person))}
                 return {min(one, other, key=lambda person: (person.confirmed, person.seen))}
         return set()
 
@@ -186,7 +189,8 @@ class PeopleTracker:
         for box in self._newcomers(frame.evidence):
             self._count += 1
             rng = self._rng.spawn(1)[0]
-            body = Filtered.start(rng, box, frame, self._motion, self.config.colour)
+            speed_sd = WALK * float(box[3]) / self._rate
+            body = Filtered.start(rng, box, frame, self._motion, self.config.colour, speed_sd)
             sighting = Sighting(frame.number, body.box, 1.0, True)
             self.people.append(Person(self._count, body, rng, self.config.look, sightings=[sighting]))
 
