@@ -9,6 +9,7 @@
 | `angles` | joint angles from joint positions |
 | `truth` | joints.csv, truth_joints.csv, TRC markers |
 | `names` | the 15 joints, and what other files call them |
+| `boxes` | several people's boxes: HOTA, MOTA, IDF1 |
 | `run` | `evaluate(run, truth)` |
 """
 

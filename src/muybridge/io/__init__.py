@@ -14,6 +14,10 @@
 `bvh`                  `read_bvh`: Biovision's
 `trc`                  marker tables for OpenSim and its kin
 `c3d`                  `read_c3d`: marker files of laboratories, by the optional package ezc3d
+`boxes`                `BoxSeries`, `read_boxes`: several people's boxes, whatever the file
+`mot`, `caviar`        MOTChallenge's text, CAVIAR's XML
+`parts`                `parts.csv`: boxes of people's parts
+`run_facts`            versions, memory and speed for `run.json`
 `disk`                 `disk_errors`, `replace_file`: a full disk is one line; whole files or none
 `prefetch`             `prefetched`: decode ahead in a thread
 =====================  ==============================================================================

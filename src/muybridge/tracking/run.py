@@ -5,12 +5,9 @@ The loop itself is in `_track`; everything else is what happens once.
 
 from __future__ import annotations
 
-import platform
-import resource
 import time
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass, replace
-from importlib.metadata import version
 from pathlib import Path
 from typing import Any, Protocol
 
@@ -25,6 +22,7 @@ from muybridge.errors import InputError
 from muybridge.filters import METHODS
 from muybridge.io.disk import make_folder
 from muybridge.io.job import Job, filter_config
+from muybridge.io.run_facts import peak_memory_mb, speed, versions
 from muybridge.io.run_folder import RunWriter, read_preparation, write_preparation, write_summary
 from muybridge.io.run_log import create_log, job_digest, read_records
 from muybridge.io.synchronise import check_synchronised, synchronised
@@ -214,18 +212,16 @@ class _Run:
     def _summarise(self, tracker: Tracker, *, interrupted: bool = False) -> RunSummary:
         status = "lost" if self.last_status == LOST or self.lost > 0.5 * self.frames else "done"
         status = "interrupted" if interrupted else status
-        times = np.array(self.milliseconds)
-        speed = {"median": float(np.median(times)), "p95": float(np.percentile(times, 95))}
-        memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0
+        times, memory = speed(self.milliseconds), peak_memory_mb()
         evaluations = self.evaluations / max(1, self.frames)
-        summary = RunSummary(status, self.frames, self.job.seed, evaluations, speed, memory)
+        summary = RunSummary(status, self.frames, self.job.seed, evaluations, times, memory)
         settings = {
             "filter": {"name": self.job.filter.name, **asdict(filter_config(self.job))},
             "motion": asdict(tracker.motion),
             "likelihood": asdict(self.cues),
             "reductions": list(tracker.model.reductions),
         }
-        facts = {"settings": settings, "versions": _versions(), "lost_frames": self.lost}
+        facts = {"settings": settings, "versions": versions(), "lost_frames": self.lost}
         write_summary(self.out, {**asdict(summary), **facts, **read_preparation(self.out)})
         return summary
 
@@ -268,18 +264,6 @@ def _record(index: int, seconds: float, estimate: Estimate, milliseconds: float)
         "sd": estimate.joint_sd,
         "costs": estimate.costs,
     }
-
-
-def _versions() -> dict[str, str]:
-    packages = ("muybridge", "numpy", "numba", "opencv-python-headless")
-    return {"python": platform.python_version()} | {name: _version(name) for name in packages}
-
-
-def _version(name: str) -> str:
-    try:
-        return version(name)
-    except ModuleNotFoundError:
-        return "unknown"
 
 
 __all__ = ["METHODS", "RunSummary", "TrackState", "run"]

@@ -1,0 +1,35 @@
+"""Several people before one fixed colour camera (Zhao, 2009): table of contents.
+
+| module | what | paper |
+|---|---|---|
+| `histograms` | bins fitted to the target, cumulative histogram maps | 4.2.1, 4.3 |
+| `box` | a box's state and motion, how many particles it needs | 4.1, 4.4 |
+| `colour_likelihood` | near the target's colours, far from the background's | 4.2 |
+| `nummiaro` | the likelihood it is compared with | 6.2 |
+| `masks`, `blobs` | the foreground, and regions of one person each | 5.1 |
+| `parts`, `part_filters` | head, torso, hip-leg: cut, and followed | 5.2 |
+| `ground`, `silhouette`, `occluders`, `scene` | what the clip tells of the camera before people are followed | ours |
+| `evidence`, `detect` | what foreground says about boxes, and where somebody new is | ours |
+| `identity` | who is who after people met | ours |
+| `filtered`, `person`, `tracker` | one box, one person, all of them | ch. 4, 5 |
+| `tracks`, `run` | what comes out; a video from end to end | |
+
+The particle filter is `filters.condensation`, as for everything else.
+"""
+
+from muybridge.people.run import PeopleConfig, PeopleSummary, look_over, run
+from muybridge.people.scene import Scene, describe
+from muybridge.people.tracker import PeopleTracker, TrackerConfig
+from muybridge.people.tracks import Tracks
+
+__all__ = [
+    "PeopleConfig",
+    "PeopleSummary",
+    "PeopleTracker",
+    "Scene",
+    "TrackerConfig",
+    "Tracks",
+    "describe",
+    "look_over",
+    "run",
+]

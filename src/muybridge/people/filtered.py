@@ -1,0 +1,69 @@
+"""A box that is followed by a particle filter, and what it looks like; and what a frame shows."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from muybridge.filters import condensation
+from muybridge.filters.particles import FloatArray
+from muybridge.filters.state import Likelihood, State
+from muybridge.people.box import SPEED_X, BoxMotion, CountConfig, Y, adapted_count
+from muybridge.people.colour_likelihood import ColourConfig, ColourTarget, Picture
+from muybridge.people.evidence import Evidence
+
+FILTER = condensation.Config(estimate="mean", resampling="systematic", particles=600)
+"""(4.5) is the mean; the comb adds less variance than (4.8), (4.9) with independent numbers."""
+START_SD = 1.0  # pixels: where somebody new is
+
+
+@dataclass(frozen=True, eq=False)
+class Frame:
+    """What a frame shows: its number, picture and background (H, W, 3) uint8 in Y Cr Cb, and the foreground."""
+
+    number: int
+    picture: Picture
+    background: Picture
+    evidence: Evidence
+
+
+@dataclass(eq=False)
+class Filtered:
+    """A box and what it looks like."""
+
+    state: State
+    target: ColourTarget
+
+    @property
+    def box(self) -> FloatArray:
+        """(6,) the estimate."""
+        return self.state.estimate
+
+    @property
+    def expected(self) -> FloatArray:
+        """(6,) where it is expected in the next frame."""
+        ahead = self.box.copy()
+        ahead[: Y + 1] += ahead[SPEED_X:]
+        return ahead
+
+    @classmethod
+    def start(
+        cls,
+        rng: np.random.Generator,
+        box: FloatArray,
+        frame: Frame,
+        motion: BoxMotion,
+        colour: ColourConfig,
+        speed_sd: float,
+    ) -> Filtered:
+        """All particles at one place (>= 4,), with velocities drawn at random (4.1.1): `speed_sd`, pixels per frame."""
+        mean = np.concatenate([box[:SPEED_X], np.zeros(2)])
+        sd = np.array([START_SD] * 4 + [speed_sd] * 2)
+        state = condensation.init(rng, mean, sd, FILTER, motion.lower, motion.upper)
+        return cls(state, ColourTarget.learn(frame.picture, mean, colour))
+
+    def step(self, rng: np.random.Generator, likelihood: Likelihood, motion: BoxMotion, counts: CountConfig) -> None:
+        """One frame, with as many particles as the last weights ask for (4.18)."""
+        config = replace(FILTER, particles=adapted_count(self.state.log_weights, counts))
+        self.state, _ = condensation.step(rng, self.state, likelihood, motion, config)

@@ -1,0 +1,134 @@
+"""One person: a particle filter over the body's box, three over its parts, and what the person looks like.
+
+Every frame: foreground, colour and the ground say how likely each particle is; `filters.condensation` does the rest.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from muybridge.filters.particles import FloatArray
+from muybridge.filters.state import Likelihood
+from muybridge.people.box import HEIGHT, BoxMotion, CountConfig, X, Y
+from muybridge.people.colour_likelihood import ColourConfig, Picture
+from muybridge.people.evidence import Together
+from muybridge.people.filtered import Filtered, Frame
+from muybridge.people.ground import GroundScale
+from muybridge.people.identity import Look
+from muybridge.people.part_filters import Parts
+
+TRUST_COLOUR = 0.6  # share of the box that must be visible: below, the histogram is of somebody else
+TRUST_WHOLE = 0.8  # to learn what the person looks like
+ENOUGH_LOOKS = 4  # frames
+
+
+@dataclass(frozen=True, eq=False)
+class Sighting:
+    """A person in one frame: the body's box (6,), how sure it is, whether anything was seen of it.
+
+    parts : (3, 5) or None, centre, size and score of each part
+    """
+
+    frame: int
+    box: FloatArray
+    score: float
+    seen: bool
+    parts: FloatArray | None = None
+
+
+@dataclass(eq=False)
+class Person:
+    """Somebody who is followed.
+
+    Attributes
+    ----------
+    seen : int
+        Frames in which enough was seen, in all.
+    unseen, hidden, doubled : int
+        Frames in a row: nothing was seen; somebody nearer or an occluder covered the box; another had the same box.
+    visible, filled : float
+        Of the box now: the share that can be seen, and the share of that which is foreground.
+    looks : int
+        Frames from which `look` was learnt.
+    """
+
+    identity: int
+    body: Filtered
+    rng: np.random.Generator
+    colour: ColourConfig
+    confirmed: bool = False
+    lost: bool = False
+    seen: int = 1
+    unseen: int = 0
+    hidden: int = 0
+    doubled: int = 0
+    visible: float = 1.0
+    filled: float = 1.0
+    sightings: list[Sighting] = field(default_factory=list)
+    look: Look | None = None
+    looks: int = 0
+    last_clear: Sighting | None = None
+    parts: Parts | None = None
+
+    @property
+    def missing(self) -> int:
+        """Frames in a row without a sight of them."""
+        return self.unseen + self.hidden
+
+    @property
+    def is_known(self) -> bool:
+        """Whether their look was learnt from enough frames to tell them from others."""
+        return self.confirmed and self.looks >= ENOUGH_LOOKS
+
+    def remember(self, picture: Picture, number: int) -> None:
+        """Learn what they look like; only while they are clear to see."""
+        box = self.body.box
+        self.look = Look.learn(picture, box, self.colour) if self.look is None else self.look.updated(picture, box)
+        self.looks += 1
+        self.last_clear = self.sightings[-1]
+
+    def likeness(self, picture: Picture, other: Person) -> float:
+        """Squared distance of what they look like to what is seen where another is."""
+        return np.inf if self.look is None else self.look.distance(picture, other.body.box)
+
+
+def follow(
+    person: Person,
+    frame: Frame,
+    motion: BoxMotion,
+    counts: CountConfig,
+    ground: GroundScale | None,
+    behind: list[FloatArray],
+) -> None:
+    """One frame of the body's filter; `behind` are boxes (>= 4,) of others who are expected further away."""
+    body, evidence = person.body, frame.evidence
+    colour = body.target.observe(frame.picture, frame.background)
+    cues: list[Likelihood] = [evidence.observe(usual_area(body.box, ground), behind)]
+    if ground is not None:
+        cues.append(ground)
+    if evidence.seen(body.expected)[0] >= TRUST_COLOUR:
+        cues.append(colour)
+    body.step(person.rng, Together(tuple(cues)), motion, counts)
+    person.visible, person.filled = evidence.seen(body.box)
+    if person.visible >= TRUST_WHOLE and person.filled >= 0.5 * evidence.silhouette.mean:
+        body.target = body.target.updated(colour.histogram(body.box))
+
+
+def usual_area(box: FloatArray, ground: GroundScale | None) -> float:
+    """Pixels of a person's box who stands where this one (>= 4,) does; its own where nothing is known of the ground."""
+    if ground is None:
+        return float(box[2] * box[HEIGHT])
+    height = float(ground.height(feet(box)))
+    return ground.aspect * height * height
+
+
+def feet(box: FloatArray) -> float:
+    """Row of the feet of a box (>= 4,)."""
+    return float(box[Y] + box[HEIGHT] / 2)
+
+
+def nearness(person: Person) -> tuple[bool, float, float]:
+    """Sorts from near to far: those who are sure first, then by where the feet are expected."""
+    return not person.confirmed, -feet(person.body.expected), float(person.body.box[X])

@@ -1,0 +1,207 @@
+"""Several people before one fixed camera: who is where in every frame.
+
+From near to far, everybody's filter takes its step and explains the foreground it covers; what is left over may be
+somebody new. Somebody is believed in after some frames, and given up after some without a sight.
+
+Differences from Zhao (2009): nearer is whose feet are lower in the picture, not whose likelihood is higher (5.4.1);
+people are followed by the foreground and by where they may stand as well as by colour.
+
+Cost: of one person and frame, N particles for the body and N for each part, adapted by (4.18).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from muybridge.errors import InputError
+from muybridge.evaluation.boxes import overlaps
+from muybridge.filters.particles import FloatArray
+from muybridge.people.blobs import BlobConfig, Mask, find_people
+from muybridge.people.box import PRINTED_VARIANCES, BoxMotion, CountConfig, boxes_from_states, states_from_boxes
+from muybridge.people.colour_likelihood import ColourConfig, Picture
+from muybridge.people.detect import Places, find_standing
+from muybridge.people.evidence import Evidence, ForegroundConfig
+from muybridge.people.filtered import Filtered, Frame
+from muybridge.people.histograms import to_luma_chroma
+from muybridge.people.identity import Identities, IdentityConfig
+from muybridge.people.part_filters import Parts
+from muybridge.people.parts import PartConfig
+from muybridge.people.person import TRUST_WHOLE, Person, Sighting, feet, follow, nearness
+from muybridge.people.scene import Scene
+from muybridge.people.tracks import Tracks, gathered
+
+HIDDEN = 0.3  # share of a box that can be seen; less is called hidden, not lost
+EMPTY, FULL = 0.4, 0.6  # of what a person fills: less, and nobody is there; more, and all of them is
+WALK = 0.6  # heights a second: standard deviation of speeds that are tried for somebody new; a brisk walk is 1
+SAME, APART = 0.6, 0.05  # intersection over union of boxes that may be one person; of people clear of each other
+
+
+@dataclass(frozen=True, kw_only=True)
+class TrackerConfig:
+    """Settings of the tracker; times are seconds of the video."""
+
+    colour: ColourConfig = ColourConfig(spread=0.6)  # of the whole body
+    part_colour: ColourConfig = ColourConfig(spread=0.6)
+    look: ColourConfig = ColourConfig(update_rate=0.1)  # by which people are told apart after they met
+    foreground: ForegroundConfig = ForegroundConfig()
+    identity: IdentityConfig = IdentityConfig()
+    parts: PartConfig = PartConfig()
+    counts: CountConfig = CountConfig()
+    blobs: BlobConfig = BlobConfig()  # where the ground's scale is not known
+    variances: tuple[float, ...] = PRINTED_VARIANCES  # px^2 a frame, (4.3)
+    smallest: float = 45.0  # px: height of a standing person below which nobody is looked for
+    least: float = 0.45  # of `detect.find_standing`
+    clear: float = 0.1  # share of its size round everybody's box where nobody new is looked for
+    confirm_s: float = 0.4  # seen for so long, somebody is believed in
+    patience_s: float = 0.8  # and given up after so long unseen,
+    patience_hidden_s: float = 2.5  # or so long hidden,
+    doubled_s: float = 1.0  # or so long in the same place as somebody else
+
+    def __post_init__(self) -> None:
+        times = self.confirm_s, self.patience_s, self.patience_hidden_s, self.doubled_s
+        if not (min(times) >= 0 and self.smallest > 0 and self.least > 0 and self.clear >= 0):
+            raise InputError("tracker", expected="times and clear not below 0, smallest and least above 0",
+                             got=f"{times}, {self.clear}, {self.smallest}, {self.least}")  # fmt: skip
+        if len(self.variances) != len(PRINTED_VARIANCES):
+            raise InputError("tracker variances", expected=f"{len(PRINTED_VARIANCES)} numbers", got=str(self.variances))
+
+
+class PeopleTracker:
+    """Follows people through pictures of one size, given with their foreground.
+
+    Parameters
+    ----------
+    scene : Scene
+    config : TrackerConfig
+    frame_rate : float, frames per second
+    seed : int
+    """
+
+    def __init__(
+        self, scene: Scene, config: TrackerConfig | None = None, *, frame_rate: float = 10.0, seed: int = 0
+    ) -> None:
+        self.scene, self.config = scene, config or TrackerConfig()
+        self.people: list[Person] = []
+        self.gone: list[Person] = []
+        self._rng = np.random.default_rng(seed)
+        self._rate, self._count = frame_rate, 0
+        self._motion = BoxMotion.within(scene.size, self.config.variances)
+        self._background = to_luma_chroma(scene.background)
+        smallest = self.config.smallest
+        self._places = None if scene.ground is None else Places.on(scene.ground, scene.size, smallest)
+        self._identities = Identities(self.config.identity, frame_rate, scene.size)
+
+    def step(self, number: int, picture: Picture, mask: Mask) -> None:
+        """One frame: picture (H, W, 3) uint8 BGR and its foreground (H, W) bool; numbers must rise."""
+        if picture.shape != self.scene.background.shape or mask.shape != picture.shape[:2]:
+            raise InputError("picture and mask", expected=f"the scene's {self.scene.background.shape}",
+                             got=f"{picture.shape} and {mask.shape}")  # fmt: skip
+        evidence = Evidence(mask, self.scene.silhouette, self.config.foreground, self.scene.occluders)
+        frame = Frame(number, to_luma_chroma(picture), self._background, evidence)
+        order = sorted(self.people, key=nearness)
+        for rank, person in enumerate(order):
+            self._follow(person, frame, [other.body.expected for other in order[rank + 1 :]])
+        self._give_up(frame)
+        self._tell_apart(frame)
+        self._welcome(frame)
+
+    def tracks(self) -> Tracks:
+        """Everybody who was believed in so far, from the first sight to the last."""
+        return gathered(person for person in self.gone + self.people if person.confirmed)
+
+    def _frames(self, seconds: float) -> int:
+        return max(1, round(seconds * self._rate))
+
+    def _follow(self, person: Person, frame: Frame, behind: list[FloatArray]) -> None:
+        """The body, what can be seen of it, the parts; and what the body explains."""
+        follow(person, frame, self._motion, self.config.counts, self.scene.ground, behind)
+        if person.visible < HIDDEN:
+            person.hidden += 1
+        elif person.filled < EMPTY * self.scene.silhouette.mean:
+            person.unseen += 1
+        else:
+            person.seen += 1
+            person.unseen = person.hidden = 0
+            person.confirmed |= person.seen >= self._frames(self.config.confirm_s)
+        parts, box = None, person.body.box
+        if person.parts is not None:
+            trusted = person.visible >= TRUST_WHOLE and not person.missing
+            parts = person.parts.step(box, frame, self._motion, self.config.counts, trusted)
+        score = min(1.0, person.visible) * person.filled
+        person.sightings.append(Sighting(frame.number, box, score, not person.missing, parts))
+        if not person.unseen:
+            frame.evidence.explain(box)
+
+    def _give_up(self, frame: Frame) -> None:
+        """Those unseen for too long, those too far away, and one of two who are one."""
+        leaving = {person for person in self.people if self._is_lost(person)} | self._double(frame.picture)
+        for person in leaving:
+            person.lost = True
+        self.gone += [person for person in self.people if person in leaving]
+        self.people = [person for person in self.people if person not in leaving]
+
+    def _is_lost(self, person: Person) -> bool:
+        ground = self.scene.ground
+        if ground is not None and ground.height(feet(person.body.box)) < 0.95 * self.config.smallest:
+            return True
+        if not person.confirmed:
+            return person.missing > 1
+        patience = self.config.patience_hidden_s if person.hidden else self.config.patience_s
+        return person.missing > self._frames(patience)
+
+    def _double(self, picture: Picture) -> set[Person]:
+        """Of two who had nearly the same box for too long, the one to give up: who looks less like what is there."""
+        shared = self._shared(self.people)
+        for person, most in zip(self.people, shared.max(axis=1, initial=0.0)):
+            person.doubled = person.doubled + 1 if most > SAME else 0
+        for a, b in np.argwhere(np.triu(shared) > SAME):
+            one, other = self.people[a], self.people[b]
+            both = one.confirmed and other.confirmed
+            if min(one.doubled, other.doubled) > (self._frames(self.config.doubled_s) if both else 2):
+                if one.is_known and other.is_known:
+                    return {max(one, other, key=lambda person: person.likeness(picture, person))}
+                return {min(one, other, key=lambda person: (person.confirmed, person.seen))}
+        return set()
+
+    def _tell_apart(self, frame: Frame) -> None:
+        """Identities of those who met, and the parts of those who can be seen whole."""
+        people = [person for person in self.people if person.confirmed]
+        alone = self._shared(people).max(axis=1, initial=0.0) < APART
+        clear = {person for person, is_alone in zip(people, alone) if is_alone and self._is_whole(person)}
+        self._identities.step(frame.picture, frame.number, people, clear, self.gone)
+        for person in people:
+            if person in clear and person.parts is None:
+                colour, parts = self.config.part_colour, self.config.parts
+                person.parts = Parts.start(person.rng, person.body.box, frame, self._motion, colour, parts)
+
+    def _is_whole(self, person: Person) -> bool:
+        full = person.filled > FULL * self.scene.silhouette.mean
+        return full and person.visible >= TRUST_WHOLE and not person.missing
+
+    def _welcome(self, frame: Frame) -> None:
+        """Somebody new for every box that explains foreground which nobody followed does."""
+        for person in self.people:
+            around = person.body.box.copy()
+            around[2:4] *= 1 + 2 * self.config.clear
+            frame.evidence.explain(around, share=1.0)
+        for box in self._newcomers(frame.evidence):
+            self._count += 1
+            rng = self._rng.spawn(1)[0]
+            speed_sd = WALK * float(box[3]) / self._rate
+            body = Filtered.start(rng, box, frame, self._motion, self.config.colour, speed_sd)
+            sighting = Sighting(frame.number, body.box, 1.0, True)
+            self.people.append(Person(self._count, body, rng, self.config.look, sightings=[sighting]))
+
+    def _newcomers(self, evidence: Evidence) -> list[FloatArray]:
+        if self._places is not None:
+            return find_standing(evidence, self._places, self.config.least)
+        unexplained = evidence.mask & (evidence.weights > 0)
+        return [states_from_boxes(blob.box)[0] for blob in find_people(unexplained, self.config.blobs)]
+
+    @staticmethod
+    def _shared(people: list[Person]) -> FloatArray:
+        """(P, P) intersection over union of everybody's box with everybody else's."""
+        boxes = boxes_from_states(np.array([person.body.box for person in people]).reshape(-1, 6))
+        return overlaps(boxes, boxes) - np.eye(len(boxes))

@@ -1,0 +1,67 @@
+"""What comes out of tracking: everybody's boxes, and those of their parts."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from muybridge.filters.particles import FloatArray
+from muybridge.io.boxes import BoxSeries
+from muybridge.io.parts import PartSeries
+from muybridge.people.box import boxes_from_states
+from muybridge.people.parts import PARTS
+
+if TYPE_CHECKING:
+    from muybridge.people.person import Person, Sighting
+
+
+@dataclass(frozen=True, eq=False)
+class Tracks:
+    """boxes : BoxSeries, whole bodies; parts : PartSeries, where they were followed."""
+
+    boxes: BoxSeries
+    parts: PartSeries
+
+    def inside(self, picture: tuple[int, int]) -> Tracks:
+        """Bodies cut at the sides of a picture (width, height); those of whom nothing is inside are left out."""
+        low = np.clip(self.boxes.boxes[:, :2], 0, picture)
+        high = np.clip(self.boxes.boxes[:, :2] + self.boxes.boxes[:, 2:], 0, picture)
+        cut = np.concatenate([low, high - low], axis=1)
+        keep = np.all(cut[:, 2:] > 0, axis=1)
+        boxes = BoxSeries(self.boxes.frames, self.boxes.ids, cut, self.boxes.confidence).where(keep)
+        return Tracks(boxes, self.parts)
+
+    def scaled(self, factor: float) -> Tracks:
+        """In the pixels of pictures `factor` times as large."""
+        boxes = BoxSeries(self.boxes.frames, self.boxes.ids, factor * self.boxes.boxes, self.boxes.confidence)
+        return Tracks(boxes, self.parts.scaled(factor))
+
+
+def gathered(people: Iterable[Person]) -> Tracks:
+    """The sightings of all of them, each up to the last frame in which something was seen of them."""
+    rows: list[tuple[int, Sighting]] = []
+    for person in people:
+        last = max((i for i, sighting in enumerate(person.sightings) if sighting.seen), default=-1)
+        rows += [(person.identity, sighting) for sighting in person.sightings[: last + 1]]
+    boxes = _column([sighting.box for _, sighting in rows], 6)
+    bodies = BoxSeries(
+        np.array([sighting.frame for _, sighting in rows], np.int64), np.array([i for i, _ in rows], np.int64),
+        boxes_from_states(boxes), np.array([sighting.score for _, sighting in rows], np.float64),
+    )  # fmt: skip
+    return Tracks(bodies, _parts([(i, sighting) for i, sighting in rows if sighting.parts is not None]))
+
+
+def _parts(rows: list[tuple[int, Sighting]]) -> PartSeries:
+    found = np.array([sighting.parts for _, sighting in rows]).reshape(-1, 5)
+    return PartSeries(
+        np.repeat(np.array([sighting.frame for _, sighting in rows], np.int64), len(PARTS)),
+        np.repeat(np.array([i for i, _ in rows], np.int64), len(PARTS)),
+        np.tile(np.array(PARTS), len(rows)), boxes_from_states(found[:, :4]), found[:, 4],
+    )  # fmt: skip
+
+
+def _column(values: list[FloatArray], width: int) -> FloatArray:
+    return np.array(values, dtype=np.float64).reshape(-1, width)

@@ -1,0 +1,93 @@
+"""`muybridge people`: a folder of results, from a video and from pictures, or one line."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+
+from made_people import Walker, empty_scene, picture_of, truth_of
+from muybridge.cli import app
+from muybridge.io.boxes import BoxSeries
+from muybridge.io.mot import write_mot
+from muybridge.io.video import open_pictures
+
+EMPTY = empty_scene()
+WALKERS = [Walker((10, 150), (310, 150), 0, 29, 0), Walker((310, 200), (10, 200), 5, 34, 1)]
+FRAMES = 40
+OPTIONS = [
+    "--set",
+    "tracker.smallest=30",
+    "--set",
+    "tracker.counts.most=200",
+    "--set",
+    "moments=20",
+    "--set",
+    "plate_moments=20",
+]
+
+
+@pytest.fixture(scope="module")
+def pictures(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("made") / "pictures"
+    folder.mkdir()
+    for frame in range(FRAMES):
+        cv2.imwrite(str(folder / f"{frame:03d}.png"), picture_of(WALKERS, frame, EMPTY)[0])
+    rows = truth_of(WALKERS, FRAMES)
+    truth = BoxSeries(
+        np.array([r[0] for r in rows]),
+        np.array([r[1] for r in rows]),
+        np.array([r[2] for r in rows]),
+        np.ones(len(rows)),
+    )
+    write_mot(folder.parent / "gt.txt", truth)
+    return folder
+
+
+def test_a_folder_of_pictures(pictures: Path, tmp_path: Path, capfd: pytest.CaptureFixture) -> None:
+    out = tmp_path / "out"
+    assert (
+        app.run(["people", str(pictures), "--out", str(out), "--frame-rate", "10", "--quiet", "--json", *OPTIONS]) == 0
+    )
+    said, complaints = capfd.readouterr()
+    record = json.loads(said)
+    assert not complaints and record["frames"] == FRAMES and record["people"] == 2 and record["status"] == "done"
+    assert sorted(path.name for path in out.iterdir()) == ["parts.csv", "people.mp4", "run.json", "tracks.txt"]
+    with open_pictures(out / "people.mp4") as video:
+        assert video.frame_count == FRAMES and video.frame_rate == 10
+
+
+def test_scores_against_a_truth(pictures: Path, tmp_path: Path, capfd: pytest.CaptureFixture) -> None:
+    pytest.importorskip("trackeval", reason="the scorer trackeval is not installed")
+    arguments = ["people", str(pictures), "--out", str(tmp_path), "--truth", str(pictures.parent / "gt.txt"), "--json"]
+    assert app.run([*arguments, "--frame-rate", "10", "--no-overlay", *OPTIONS]) == 0
+    said = capfd.readouterr().out.splitlines()
+    scores = json.loads(said[-1])["scores"]
+    assert scores["mota"] > 0.8 and scores["idf1"] > 0.8 and scores["switches"] == 0
+    assert any("HOTA" in line for line in said) and "MOTA" in (tmp_path / "scores.txt").read_text()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["none.mp4"], "none.mp4"),
+        (["PICTURES", "--set", "tracker.smalest=3"], "did you mean smallest"),
+        (["PICTURES", "--truth", "none.txt"], "none.txt"),
+        (["PICTURES", "--occluders", "none.png"], "none.png"),
+        (["PICTURES", "--frame-rate", "-1"], "frame rate"),
+        (["PICTURES", "--occluders", "SMALL"], "occluders"),
+    ],
+)
+def test_bad_input_is_one_line_and_nothing_written(
+    pictures: Path, tmp_path: Path, capfd: pytest.CaptureFixture, arguments: list[str], words: str
+) -> None:
+    cv2.imwrite(str(tmp_path / "small.png"), np.zeros((5, 5), np.uint8))
+    names = {"PICTURES": str(pictures), "SMALL": str(tmp_path / "small.png")}
+    out = tmp_path / "out"
+    assert app.run(["people", *(names.get(word, word) for word in arguments), "--out", str(out), *OPTIONS]) == 2
+    said, line = capfd.readouterr()
+    assert line.count("\n") == 1 and words in line, line
+    assert not out.exists() or not list(out.iterdir())
