@@ -1,8 +1,8 @@
 """Clips of changing scenes with exact masks, for `background_models.py`: rendered people before backgrounds that move.
 
 A clip is a background (a rendered room, or a texture made here, as a function of time) over which the package's own
-figures are drawn. Everything follows from the seed. Truth is what a person covers by at least half; pixels that a person
-covers in part (5 to 95 %) count nowhere. Some of the people wear the colours of what is behind them.
+figures are drawn. Everything follows from the seed. Truth is what a person covers by at least half; pixels that a
+person covers in part (5 to 95 %) count nowhere. Some of the people wear the colours of what is behind them.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from muybridge.synthetic.presets import preset_scene
 from muybridge.synthetic.rasterise import draw
 from muybridge.synthetic.rigs import looking_at
 from muybridge.synthetic.sensor import exposed
-from muybridge.synthetic.stage import Actor, Stage, stage
+from muybridge.synthetic.stage import Actor, stage
 
 SIZE = (320, 240)
 RATE = 30.0
@@ -62,7 +62,8 @@ class Visit:
     speed: float = 1.0
 
     def frame(self, time: float) -> float | None:
-        """The frame number of the motion, which goes to and fro where the visit is longer; None where nobody is there."""
+        """The frame number of the motion, which goes to and fro where the visit is longer; None where nobody is
+        there."""
         if not self.start <= time < self.start + self.duration:
             return None
         last = len(self.actor.track.times) - 1
@@ -151,13 +152,13 @@ def _lamp():
     return Lamp(direction=tuple(LAMP))
 
 
-def calm(seed: int, learn: float = 20.0, test: float = 12.0) -> Clip:
+def calm(seed: int, learn: float = 20.0, test: float = 10.0) -> Clip:
     """A room whose light drifts by 2 %."""
 
     def make() -> Iterator[Frame]:
         scene = room_of(seed)
         plate = stage(scene).plates[0]
-        people = visits(scene, seed, [learn, learn + 6.0], plate)
+        people = visits(scene, seed, [learn, learn + PASS], plate)
         return play(seed, learn + test, scene, lambda t: plate, people, shadow=0.25,
                     gain=lambda t: 1 + 0.02 * np.sin(2 * np.pi * t / 17))  # fmt: skip
 
@@ -173,7 +174,7 @@ def _toggles(rng: np.random.Generator, seconds: float, shortest: float, longest:
     return np.cumsum(rng.uniform(shortest, longest, int(seconds / shortest) + 2))
 
 
-def lamp(seed: int, learn: float = 30.0, test: float = 12.0) -> Clip:
+def lamp(seed: int, learn: float = 20.0, test: float = 10.0) -> Clip:
     """A lamp beside a wall that somebody switches on and off, off most of the time."""
 
     def make() -> Iterator[Frame]:
@@ -186,7 +187,7 @@ def lamp(seed: int, learn: float = 30.0, test: float = 12.0) -> Clip:
         tint = np.array([0.55, 0.9, 1.15]) * rng.uniform(0.4, 0.7)
         lit = plate * (1 + glow[..., None] * tint).astype(np.float32)
         pairs = _toggles(rng, learn + test, 1.2, 2.8)
-        people = visits(scene, seed, [5.0, learn, learn + 6.0], plate)
+        people = visits(scene, seed, [6.0, learn, learn + PASS], plate)
         return play(seed, learn + test, scene, lambda t: lit if (pairs <= t).sum() % 3 == 1 else plate, people)
 
     return Clip(f"lamp-{seed}", round(learn * RATE), round(test * RATE), make)
@@ -202,7 +203,7 @@ def _texture(rng: np.random.Generator, size: tuple[int, int], grain: float, octa
     return total / np.abs(total).max() * 1.6
 
 
-def door(seed: int, learn: float = 30.0, test: float = 12.0) -> Clip:
+def door(seed: int, learn: float = 20.0, test: float = 10.0) -> Clip:
     """A door that swings open and shut; behind it a bright corridor."""
 
     def make() -> Iterator[Frame]:
@@ -230,13 +231,13 @@ def door(seed: int, learn: float = 30.0, test: float = 12.0) -> Clip:
             picture[top : top + height, left : left + seen] = narrow * (1 - 0.25 * opened)
             return picture
 
-        people = visits(scene, seed, [6.0, learn, learn + 6.0], plate)
+        people = visits(scene, seed, [6.0, learn, learn + PASS], plate)
         return play(seed, learn + test, scene, background, people)
 
     return Clip(f"door-{seed}", round(learn * RATE), round(test * RATE), make)
 
 
-def leaves(seed: int, learn: float = 30.0, test: float = 12.0) -> Clip:
+def leaves(seed: int, learn: float = 20.0, test: float = 10.0) -> Clip:
     """Foliage that sways in gusts over most of the picture; people in its colours walk before it."""
 
     def make() -> Iterator[Frame]:
@@ -256,16 +257,16 @@ def leaves(seed: int, learn: float = 30.0, test: float = 12.0) -> Clip:
             sway = np.sin(2 * np.pi * speeds * t + phases)
             across = 7 * sway[0, 0] + 4 * sway[0, 1] * patch[0][0] + 3 * sway[0, 2] * patch[0][1]
             down = 2 * sway[1, 0] + 2 * sway[1, 1] * patch[1][0] + 1.5 * sway[1, 2] * patch[1][1]
-            return cv2.remap(tree, (x + 20 + bend * across).astype(np.float32), (y + 20 + bend * down).astype(np.float32),
-                             cv2.INTER_LINEAR)  # fmt: skip
+            column, line = (x + 20 + bend * across), (y + 20 + bend * down)
+            return cv2.remap(tree, column.astype(np.float32), line.astype(np.float32), cv2.INTER_LINEAR)
 
-        people = visits(scene, seed, [6.0, learn, learn + 6.0], background(0.0))
+        people = visits(scene, seed, [6.0, learn, learn + PASS], background(0.0))
         return play(seed, learn + test, scene, background, people)
 
     return Clip(f"leaves-{seed}", round(learn * RATE), round(test * RATE), make)
 
 
-def water(seed: int, learn: float = 30.0, test: float = 12.0) -> Clip:
+def water(seed: int, learn: float = 20.0, test: float = 10.0) -> Clip:
     """A pool over the lower two thirds: waves move through it, with bright crests."""
 
     def make() -> Iterator[Frame]:
@@ -286,7 +287,7 @@ def water(seed: int, learn: float = 30.0, test: float = 12.0) -> Clip:
             pool = base * (1 + 0.30 * level[..., None]) + 70 * np.clip(level - 0.75, 0, 1)[..., None]
             return plate * (1 - edge) + pool * edge
 
-        people = visits(scene, seed, [6.0, learn, learn + 6.0], background(0.0))
+        people = visits(scene, seed, [6.0, learn, learn + PASS], background(0.0))
         return play(seed, learn + test, scene, background, people)
 
     return Clip(f"water-{seed}", round(learn * RATE), round(test * RATE), make)

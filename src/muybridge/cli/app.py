@@ -18,6 +18,7 @@ COMMANDS = {
     "track": ("track:track", "Track the person that a job file describes."),
     "job": ("job:job", "Write a job for a folder in a known layout."),
     "sample": ("sample:sample", "Get a real recording to try things on."),
+    "background": ("background:background", "Tell people from what stands still: a mask for every picture."),
     "synth": ("synth:synth", "Render a scene with known truth, for track."),
     "evaluate": ("evaluate:evaluate", "Compare a run with the truth: error per joint in mm."),
     "report": ("report:report", "Write a run's report and plots into its folder."),
