@@ -5,6 +5,7 @@
 `video_reader`         `VideoReader`: frame-exact reading by timestamp
 `image_sequence`       `ImageSequence`: `CAM1/image%04d.bmp` and `CAM1/*.png`
 `video_writer`         `VideoWriter`: H.264 that browsers play
+`mask_writer`          `MaskFolder`, `MaskVideo`: masks as PNGs or as a video
 `synchronise`          `check_synchronised`, `synchronised`: several cameras as one stream
 `run_folder`           `joints.csv`, `pose.csv`, `run.json`
 `run_log`              the log that `--resume` continues from

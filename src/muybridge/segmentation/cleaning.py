@@ -82,6 +82,26 @@ def median(mask: NDArray, side: int) -> NDArray:
     return cv2.medianBlur(mask.astype(np.uint8), side).astype(bool)
 
 
+def close_open(mask: NDArray, closing: int, opening: int) -> NDArray:
+    """Close with a square of side `closing`, then open with one of side `opening` pixels; 1 leaves a step out.
+
+    Zhao (2009, 6.1): a small closing first fills holes without joining noise, a larger opening then removes noise.
+    """
+    import cv2
+
+    out: Any = mask.view(np.uint8)
+    for side, operation in ((closing, cv2.MORPH_CLOSE), (opening, cv2.MORPH_OPEN)):
+        if side > 1:
+            out = cv2.morphologyEx(out, operation, np.ones((side, side), np.uint8))
+    return out.view(bool)
+
+
+def check_squares(what: str, closing: int, opening: int) -> None:
+    """Raise where the sides of `close_open` are none."""
+    if closing < 1 or opening < 1:
+        raise InputError(f"{what} closing and opening", expected="1 pixel or more", got=f"{closing} and {opening}")
+
+
 def fill_holes(mask: NDArray, largest: int) -> NDArray:
     """Fill background regions of up to `largest` pixels that do not touch the border."""
     import cv2

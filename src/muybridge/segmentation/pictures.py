@@ -2,12 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Sequence
+from typing import Any, Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from muybridge.errors import InputError
+
+
+class Learner(Protocol):
+    """A model that is made of one picture after the other."""
+
+    def learn(self, image: NDArray) -> Any:
+        """Learn a picture."""
+        ...
+
+
+Model = TypeVar("Model", bound=Learner)
 
 #: Levels between the channels of a grey picture: one step of a video's chroma moves a channel by so much.
 GREY_RANGE = 3
@@ -49,6 +61,30 @@ def check_same_shape(image: NDArray, shape: tuple[int, ...]) -> NDArray:
             remedy="train and apply the model at the same size and number of channels",
         )
     return picture
+
+
+def learn_each(pictures: Iterable[NDArray], make: Callable[[tuple[int, ...]], Model]) -> Model:
+    """A model made for the first picture's shape (H, W, C), that has learnt all of them, one at a time."""
+    model: Model | None = None
+    for picture in pictures:
+        model = model or make(with_channels(picture).shape)
+        model.learn(picture)
+    if model is None:
+        raise InputError("pictures to learn the background from", expected="at least one", got="none")
+    return model
+
+
+def thinned(pictures: Iterable[NDArray], most: int) -> list[NDArray]:
+    """All pictures, or at least half of `most` and no more than `most`, evenly spread, without holding more at a
+    time."""
+    kept: list[NDArray] = []
+    step = 1
+    for number, picture in enumerate(pictures):
+        if number % step == 0:
+            kept.append(picture)
+        if len(kept) > most:
+            kept, step = kept[::2], 2 * step
+    return kept
 
 
 def reduce_image(image: NDArray, factor: float) -> NDArray:

@@ -1,0 +1,168 @@
+"""A mixture of Gaussians for each pixel (Zhao 2009, section 2.1; Stauffer and Grimson 1999): MBM in the thesis.
+
+Each pixel has up to K components. A colour that is near one moves it (2.3, 2.4) and adds to its weight (2.5); a colour
+that is near none becomes a component in place of the lightest. What is seen often is background: the components that
+come first by weight over standard deviation and hold `portion` of the weight. A person who stays is seen often too, and
+becomes background within 1 / update_rate pictures: `spatial` is for that.
+
+=======  =============================================================
+symbol   name
+=======  =============================================================
+K        `components`
+alpha    `update_rate`, and 1 / n for the first pictures
+rho      `update_rate` over the component's weight
+=======  =============================================================
+
+Differences from the papers: covariances are diagonal; the component nearest by Mahalanobis distance matches, not the
+first by weight; rho is alpha over the weight, which makes mean and variance those of the pictures that matched, where
+alpha times the density as printed lets nothing move; variances have a floor; densities fall as exp(-d^2 / 2) up to
+four standard deviations and slower beyond, so that far colours keep their order; (2.2) is printed with the covariance
+for its inverse. `portion=1` scores by all components, as (2.1) is printed.
+
+Cost: O(K) a pixel.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from muybridge._kernels.mixture import MOST_SLOTS, mixture_densities, mixture_scores, mixture_update
+from muybridge.errors import InputError
+from muybridge.segmentation.cleaning import check_squares, close_open
+from muybridge.segmentation.pictures import check_same_shape, learn_each
+
+
+@dataclass(frozen=True)
+class ComponentsConfig:
+    """Settings of every pixel's mixture, shared by the models that are made of them."""
+
+    components: int = 6
+    """K, 1 to 8 (thesis: 6)."""
+    update_rate: float = 0.002
+    """alpha of (2.5), 0..1: the share of the newest picture in the weights of a pixel's components."""
+    match: float = 2.5
+    """Standard deviations, root mean square over the channels, up to which a colour matches (Stauffer and Grimson)."""
+    portion: float = 0.95
+    """Share of the weight that the background's components hold, in (0, 1]."""
+    sd_floor: float = 2.0
+    """Grey values of 255: the least standard deviation."""
+    first_sd: float = 15.0
+    """Grey values: the standard deviation of a new component."""
+    closing: int = 3
+    """Pixels: side of the square by which the mask is closed; 1 leaves it out (thesis, 6.1: 3)."""
+    opening: int = 5
+    """Pixels: side of the square by which it is then opened (thesis: 5)."""
+
+    def __post_init__(self) -> None:
+        what = f"{self._name} background"
+        if not 1 <= self.components <= MOST_SLOTS:
+            raise InputError(f"{what} components", expected=f"1 to {MOST_SLOTS}", got=str(self.components))
+        for name in ("update_rate", "portion"):
+            if not 0 < getattr(self, name) <= 1:
+                raise InputError(f"{what} {name}", expected="above 0, at most 1", got=f"{getattr(self, name):g}")
+        for name in ("match", "sd_floor", "first_sd"):
+            if not 0 < getattr(self, name) < np.inf:
+                raise InputError(f"{what} {name}", expected="above 0", got=f"{getattr(self, name):g}")
+        check_squares(what, self.closing, self.opening)
+
+    @property
+    def _name(self) -> str:
+        """The model's, for messages."""
+        return type(self).__name__.removesuffix("Config").lower()
+
+
+@dataclass(frozen=True)
+class MixtureConfig(ComponentsConfig):
+    """Settings of the mixture model: those of the components."""
+
+
+class PixelMixtures:
+    """The components of every pixel, and how they learn; shared by the models that are made of them.
+
+    Attributes
+    ----------
+    weights : (H, W, K) float32; 0 where there is no component
+    means, variances : (H, W, K, C) float32, grey values and their squares
+    kept : (H, W) uint8, a bit for each component that counts as background
+    matched, fresh : (H, W) int8: which component the last picture matched, which slot it made anew; -1 for none
+    seen : pictures learnt
+    """
+
+    def __init__(self, shape: tuple[int, ...], config: ComponentsConfig) -> None:
+        height, width, channels = shape
+        slots = (height, width, config.components)
+        self.config, self.seen = config, 0
+        self.weights = np.zeros(slots, np.float32)
+        self.means, self.variances = np.zeros((*slots, channels), np.float32), np.ones((*slots, channels), np.float32)
+        self.kept = np.zeros((height, width), np.uint8)
+        self.matched, self.fresh = np.full((height, width), -1, np.int8), np.full((height, width), -1, np.int8)
+        self._known = np.zeros((height, width), bool)
+
+    def densities(self, picture: NDArray) -> NDArray:
+        """(H, W, K) float32: the background components' densities over that of evenly spread colours."""
+        out = np.empty(self.weights.shape, np.float32)
+        mixture_densities(picture, self.weights, self.means, self.variances, self.kept, out)
+        return out
+
+    def score(self, picture: NDArray) -> NDArray:
+        """(H, W) float32, nats: -log of (2.1) over evenly spread colours."""
+        out = np.empty(self.kept.shape, np.float32)
+        mixture_scores(picture, self.weights, self.means, self.variances, self.kept, out)
+        return out
+
+    def learn(self, picture: NDArray, learnt: NDArray) -> NDArray:
+        """Learn where `learnt` (H, W) bool; returns where the picture matched what was background before it."""
+        config = self.config
+        self.seen += 1
+        mixture_update(
+            picture, learnt, self.weights, self.means, self.variances, self.kept,
+            limit=config.match**2 * picture.shape[2], rate=max(config.update_rate, 1.0 / self.seen),
+            floor=config.sd_floor**2, wide=config.first_sd**2, portion=config.portion,
+            matched=self.matched, fresh=self.fresh, background=self._known,
+        )  # fmt: skip
+        return self._known
+
+    @property
+    def background(self) -> NDArray:
+        """(H, W, C) float32: the mean of each pixel's heaviest component."""
+        heaviest = self.weights.argmax(axis=2)[..., None, None]
+        return np.take_along_axis(self.means, heaviest, axis=2)[:, :, 0]
+
+
+class MixtureBackground:
+    """Foreground is what matches no component of the background; every picture is learnt, wherever people are."""
+
+    def __init__(self, shape: tuple[int, ...], config: MixtureConfig | None = None) -> None:
+        self.config = config or MixtureConfig()
+        self.mixtures = PixelMixtures(shape, self.config)
+        self._everything = np.ones(shape[:2], bool)
+
+    @classmethod
+    def train(cls, pictures: Iterable[NDArray], config: MixtureConfig | None = None) -> MixtureBackground:
+        """Learn from pictures, each (H, W) or (H, W, 3) uint8, all of one size; people may pass through."""
+        return learn_each(pictures, lambda shape: cls(shape, config))
+
+    @property
+    def background(self) -> NDArray:
+        """(H, W, C) float32: what each pixel mostly looks like."""
+        return self.mixtures.background
+
+    def learn(self, image: NDArray) -> None:
+        """Learn a picture of the size and channels the model was made for."""
+        self.mixtures.learn(self._checked(image), self._everything)
+
+    def score(self, image: NDArray) -> NDArray:
+        """(H, W) float32, nats: by how much evenly spread colours explain each pixel better; learns nothing."""
+        return self.mixtures.score(self._checked(image))
+
+    def apply(self, image: NDArray) -> NDArray:
+        """Foreground (H, W) bool; learns the picture."""
+        known = self.mixtures.learn(self._checked(image), self._everything)
+        return close_open(~known, self.config.closing, self.config.opening)
+
+    def _checked(self, image: NDArray) -> NDArray:
+        return check_same_shape(image, self.mixtures.means.shape[:2] + self.mixtures.means.shape[3:])

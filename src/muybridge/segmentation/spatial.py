@@ -1,0 +1,156 @@
+"""Pixels in pairs: the spatially extended background model of Zhao (2009, chapter 3), SBM in the thesis.
+
+Each pixel has a mixture of Gaussians, and for pairs of pixels five apart it is kept how often each combination of
+their components was seen. A colour that the pixel knows is background only together with what its partners then show:
+a door's colour while the door is shut. (3.1) multiplies the pixel's own density with the joint ones of `partners`
+pairs, those of most mutual information (3.8) among eight neighbours.
+
+====================  ========================================================
+symbol                name
+====================  ========================================================
+P(B0 | c0)            the mixture's density, as in `mixture`
+P(c0, ci)             joint density (3.2): weights over K x K combinations
+w_k1,k2               counts of combinations over their sum; at first none
+alpha_c               `update_rate`: covariances are the pixels' own, see below
+beta_c                `pair_rate`
+Th                    `match`
+====================  ========================================================
+
+Differences from the paper:
+
+- A joint covariance is block-diagonal, its blocks being the (diagonal) covariances of the two pixels' components: the
+  best joint match (3.4) is then the pair of best matches, and a joint density a product. The thesis updates 6 x 6
+  numbers for each of K x K combinations and pair, 0.5 GB at 320 x 240; what that would gain is measured in
+  docs/background.md.
+- (3.6) as printed adds beta_c times two densities, and (3.5) takes nothing from the combinations that did not match, so
+  that all weights grow to 1. Here the matched one gains `pair_rate`, 1 / n at first, and all others lose as much (2.5).
+- What is foreground is not learnt until it has been foreground for `patience` pictures; with `patience=0` everything is
+  learnt, as in the thesis, and who stands still is background soon.
+- A component counts as background if it is among those that hold `portion` of the weight; `portion=1` takes all.
+- P(c0, ci) = P(c0 | ci) P(ci) blames a pixel for a partner in front of which somebody stands, which widens people by
+  the distance of the partners. -log P(ci) counts up to `partner_limit`; infinity is (3.1) as printed.
+
+Cost: O(K^2 M) a pixel to test, O(pairs) to learn; mutual information is measured for some rows at each picture.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from muybridge._kernels.pairs import choose_partners, pair_scores, pair_update
+from muybridge.errors import InputError
+from muybridge.segmentation.cleaning import close_open
+from muybridge.segmentation.gate import Gate, check_patience
+from muybridge.segmentation.mixture import ComponentsConfig, PixelMixtures
+from muybridge.segmentation.pictures import check_same_shape, learn_each
+
+OFFSETS = np.array([(0, 5), (5, 0), (3, 4), (4, -3)], np.int64)
+"""(rows, columns), pixels: from a pixel to four of its neighbours; the other four lie opposite. All are 5 away."""
+RESELECT = 60
+"""Pictures in which the partners of all rows are chosen anew, some rows at each."""
+
+
+@dataclass(frozen=True)
+class SpatialConfig(ComponentsConfig):
+    """Settings of the spatial model, beside those of the components; `match` is Th of (3.4) too."""
+
+    portion: float = 0.98
+    """Share of the weight that the background's components hold, in (0, 1]."""
+    pair_rate: float = 0.002
+    """beta_c of (3.6), 0..1: the share of the newest picture in the weights of a pair's combinations."""
+    partners: int = 2
+    """Pairs that a pixel is judged by, 0 to 8 (thesis: 2)."""
+    partner_limit: float = 10.0
+    """Nats against evenly spread colours: the most that a partner's own colour may count; infinite in the thesis."""
+    threshold: float = 0.0
+    """Nats by which evenly spread colours explain a foreground pixel better, at least."""
+    patience: int = 3600
+    """Pictures after which foreground is learnt: two minutes at 30 Hz; 0 learns everything at once."""
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        what = f"{self._name} background"
+        if not 0 < self.pair_rate < 1:
+            raise InputError(f"{what} pair_rate", expected="above 0, below 1", got=f"{self.pair_rate:g}")
+        if not 0 <= self.partners <= 2 * len(OFFSETS):
+            raise InputError(f"{what} partners", expected=f"0 to {2 * len(OFFSETS)}", got=str(self.partners))
+        if not self.partner_limit > -np.inf:  # NaN fails too
+            raise InputError(f"{what} partner_limit", expected="a number of nats", got=f"{self.partner_limit:g}")
+        if not np.isfinite(self.threshold):
+            raise InputError(f"{what} threshold", expected="a number of nats", got=f"{self.threshold:g}")
+        check_patience(what, self.patience)
+
+
+class SpatialBackground:
+    """Mixtures of all pixels, and which components of two pixels are seen together.
+
+    Attributes
+    ----------
+    mixtures : PixelMixtures
+    counts : (D, H, W, K, K) float32, and their sums totals (D, H, W): pair d of a pixel is the one at OFFSETS[d]
+    partners : (H, W, M) int8: 2 d for the neighbour at OFFSETS[d], 2 d + 1 for the one opposite, -1 for none
+    """
+
+    def __init__(self, shape: tuple[int, ...], config: SpatialConfig | None = None) -> None:
+        self.config = config or SpatialConfig()
+        height, width = shape[:2]
+        self.mixtures = PixelMixtures(shape, self.config)
+        slots = self.config.components
+        self.counts = np.zeros((len(OFFSETS), height, width, slots, slots), np.float32)
+        self.totals = np.zeros((len(OFFSETS), height, width), np.float32)
+        self.partners = np.full((height, width, self.config.partners), -1, np.int8)
+        self._information = np.zeros((len(OFFSETS), height, width), np.float32)
+        self._gate, self._everything = Gate((height, width), self.config.patience), np.ones((height, width), bool)
+        choose_partners(self.counts, OFFSETS, 0, 1, self._information, self.partners)
+
+    @classmethod
+    def train(cls, pictures: Iterable[NDArray], config: SpatialConfig | None = None) -> SpatialBackground:
+        """Learn from pictures, each (H, W) or (H, W, 3) uint8, all of one size; people may pass through."""
+        return learn_each(pictures, lambda shape: cls(shape, config))
+
+    @property
+    def background(self) -> NDArray:
+        """(H, W, C) float32: what each pixel mostly looks like."""
+        return self.mixtures.background
+
+    def learn(self, image: NDArray) -> None:
+        """Learn all of a picture."""
+        self._learn(self._checked(image), self._everything)
+
+    def score(self, image: NDArray) -> NDArray:
+        """(H, W) float32, nats: -log of (3.1) over evenly spread colours; learns nothing."""
+        return self._score(self._checked(image))
+
+    def apply(self, image: NDArray) -> NDArray:
+        """Foreground (H, W) bool; learns the background of the picture."""
+        picture = self._checked(image)
+        mask = close_open(self._score(picture) > self.config.threshold, self.config.closing, self.config.opening)
+        self._learn(picture, self._gate.learnt(mask))
+        return mask
+
+    def _score(self, picture: NDArray) -> NDArray:
+        out = np.empty(picture.shape[:2], np.float32)
+        self._pair_scores(self.mixtures.densities(picture), out)
+        return out
+
+    def _pair_scores(self, densities: NDArray, out: NDArray) -> None:
+        """Fill out (H, W) float32 with -log of (3.1)."""
+        pair_scores(
+            self.mixtures.weights, densities, self.counts, self.totals, OFFSETS, self.partners,
+            self.config.partner_limit, out,
+        )  # fmt: skip
+
+    def _learn(self, picture: NDArray, learnt: NDArray) -> None:
+        mixtures = self.mixtures
+        mixtures.learn(picture, learnt)
+        pair_update(self.counts, self.totals, OFFSETS, mixtures.matched, mixtures.fresh, self.config.pair_rate)
+        first = mixtures.seen % RESELECT
+        choose_partners(self.counts, OFFSETS, first, RESELECT, self._information, self.partners)
+
+    def _checked(self, image: NDArray) -> NDArray:
+        shape = (*self.mixtures.kept.shape, self.mixtures.means.shape[3])
+        return np.ascontiguousarray(check_same_shape(image, shape))
