@@ -30,6 +30,9 @@ def test_equal_trials_have_equal_digests() -> None:
         replace(BASE, clip=Clip(seed=4)),
         BASE.with_settings(particles=301),
         BASE.with_motion(velocity_gain=0.0),
+        replace(BASE, begin="wrong"),
+        replace(BASE, guesser="model"),
+        replace(BASE, gap=(3, 5)),
     ],
 )
 def test_whatever_decides_the_result_is_in_the_digest(other: Trial) -> None:
@@ -73,3 +76,17 @@ def test_bad_input_is_one_line(make, words: str) -> None:
     with pytest.raises(InputError, match=words) as caught:
         make()
     assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("changed", "words"),
+    [
+        ({"begin": "guess"}, "a guesser"),
+        ({"begin": "luck"}, "'truth'"),
+        ({"gap": (0, 3)}, "not from the beginning"),
+        ({"gap": (5, 3)}, "first and last"),
+    ],
+)
+def test_what_cannot_be_tried(changed: dict, words: str) -> None:
+    with pytest.raises(InputError, match=words):
+        replace(BASE, **changed)

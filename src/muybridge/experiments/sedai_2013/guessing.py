@@ -88,7 +88,7 @@ def report_of_alpha(outcome: Outcome) -> Report:
     times = np.arange(len(variance)) * EVERY / clip.rate
     figure, axes = new_figure(1, 3, width=12.0, height=3.4)
     along, against, true = axes[0]
-    along.plot(times, variance, label="variance, rad²")
+    along.plot(times, variance / variance.max(), label=f"variance / {variance.max():.2g} rad²")
     along.plot(times, np.exp(-variance / trusted), label="alpha")
     along.set_title("Fig. 8: along a walk, one camera")
     along.set_xlabel("s")

@@ -1,0 +1,62 @@
+"""The experiments of Sedai et al. (2013): which trials they ask for, and what is counted."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from experiments.made_results import result
+from muybridge.experiments.experiment import Case, Row
+from muybridge.experiments.harness import experiment
+from muybridge.experiments.sedai_2013 import conditions
+from muybridge.experiments.sedai_2013.tracking import frames_to_recover, usual_error
+from muybridge.experiments.trial import Clip, Trial
+from muybridge.filters import agp_pf
+
+SCALE = conditions.scale_of(False, 2)
+
+
+def test_nobody_tracked_was_learnt_from() -> None:
+    (source,) = conditions.training(SCALE).scenes
+    assert not set(source.figures) & set(SCALE.figures) and len(source.figures) == 6
+    assert not set(source.seeds) & set(range(100))
+    count = len(source.figures) * len(source.motions) * len(source.seeds) * (source.frames // source.every) * 3
+    assert 2500 <= count <= 3500
+
+
+@pytest.mark.parametrize("quick", [True, False])
+def test_every_part_asks_for_trials_that_can_be_run(quick: bool) -> None:
+    asked = experiment("sedai-2013")
+    scale = asked.scale(quick, 2)
+    for part in asked.parts:
+        for case in part.cases(scale):
+            trial = case.trial
+            assert trial.clip.figure in conditions.UNSEEN and trial.clip.preset == "humaneva" and trial.clip.rate == 60
+            assert trial.filter_config is not None and (trial.guesser or trial.begin != "guess")
+
+
+@pytest.mark.parametrize(
+    ("name", "settings"),
+    [("AGP-PF", {}), ("AGP", {"alpha": 1.0}), ("APF", {"alpha": 0.0})],
+)
+def test_the_cases_are_settings_of_one_filter(name: str, settings: dict) -> None:
+    assert conditions.case_of(name) == settings
+    assert conditions.printed(name, SCALE, Clip()).filter_config == replace(agp_pf.PRINTED, **settings)
+
+
+def test_without_layers_there_is_one() -> None:
+    assert conditions.printed("GP-PF", SCALE, Clip()).filter_config.layers == 1
+    pf = conditions.printed("PF", SCALE, Clip()).filter_config
+    assert (pf.layers, pf.alpha) == (1, 0.0)
+
+
+def test_frames_to_recover() -> None:
+    """Usual: the median of the last third, 20; back at 30 or less, counted from the first frame after the gap."""
+    frames = (20.0,) * 3 + (400.0,) * 3 + (90.0, 31.0, 29.0) + (20.0,) * 3
+    row = Row(Case("x", Trial(Clip(), gap=(3, 5))), replace(result(), frame_mm=frames))
+    assert usual_error([row]) == 20.0
+    assert frames_to_recover(row, 20.0) == 2
+    assert frames_to_recover(replace(row, case=Case("x", Trial(Clip()))), 20.0) == 0
+    assert np.isinf(frames_to_recover(row, 10.0))
