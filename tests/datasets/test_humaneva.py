@@ -22,6 +22,7 @@ from made_humaneva import (
     write_lines,
     write_mat,
 )
+from muybridge.cli import app
 from muybridge.datasets import humaneva_frames, write_job
 from muybridge.datasets.humaneva import humaneva_recording
 from muybridge.datasets.humaneva_joints import Person, humaneva_joints, torso_radius
@@ -89,6 +90,16 @@ def test_the_job_is_one_that_track_accepts(folder, tmp_path):
         assert all(eye.segmenter is not None for eye in eyes.eyes)
     truth = read_truth(job.reference.file)
     np.testing.assert_allclose(truth.positions, humaneva_recording(folder).truth.positions, atol=1e-6)
+
+
+def test_the_command(folder, tmp_path, capfd):
+    chosen = ["--subject", "S1", "--motion", "Walking_1", "--cameras", "C2,BW1"]
+    assert app.run(["job", "humaneva", str(folder), *chosen, "--out", str(tmp_path / "job")]) == 0
+    assert [camera.name for camera in jobs.read(tmp_path / "job" / "JOB.toml").cameras] == ["C2", "BW1"]
+    capfd.readouterr()
+    assert app.run(["job", "humaneva", str(folder), "--part", "train"]) == 2
+    line = "muybridge: S1 Walking_1: expected pictures of 1203 frames, got 13; take another part, or see whether the "
+    assert capfd.readouterr().err == line + "files are whole\n"
 
 
 def test_the_background_is_the_one_of_that_day(folder):
