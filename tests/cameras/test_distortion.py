@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import assume, given
+from hypothesis import assume, example, given
 from hypothesis import strategies as st
 
 from muybridge.cameras.distortion import distort, fold_radius_squared, undistort
@@ -28,10 +28,12 @@ def test_no_distortion_is_the_identity():
     np.testing.assert_array_equal(undistort(points, np.zeros(5)), points)
 
 
+@example((0.0, 1.0), (0.375, 0.25, -0.125))  # a moustache: convex, then concave; the distorted point is beyond the fold
 @given(flat, st.tuples(coefficient, coefficient, coefficient))
 def test_inverse(point, radial):
     """Up to half the fold the radial slope is well away from 0, and the inverse is exact to its residual of 1e-10."""
     coefficients = np.array([radial[0], radial[1], 0.001, -0.001, radial[2]])
+    point = np.asarray(point)
     assume(point @ point < 0.5 * fold_radius_squared(coefficients))
     np.testing.assert_allclose(undistort(distort(point, coefficients), coefficients), point, rtol=0, atol=1e-8)
 

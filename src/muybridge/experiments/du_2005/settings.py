@@ -144,9 +144,10 @@ def search_report(outcome: Outcome) -> Report:
         "Cost: of the estimates' silhouettes, two-sided, between 0 and 1; lower is nearer to the mode.",
         SUMMARY_NOTES[0],
     )
-    tables = []
+    tables, figures = [], {}
     for view, seen in VIEWS.items():
         groups = outcome.groups(outcome.of_view(view))
+        figures[f"search-{view}"] = interval_figure(groups, f"Why DE-MC does not beat annealing, {seen}")
         rows = tuple(
             (label, over_seeds(values(found, lambda row: row.result.cost)), mean_moves(found), error(found),
              float(np.mean([row.result.evaluations for row in found])), len(found))
@@ -154,7 +155,7 @@ def search_report(outcome: Outcome) -> Report:
         )  # fmt: skip
         tables.append(Table(f"search-{view}", f"Why DE-MC does not beat annealing, {seen}", columns, rows, notes))
         tables.append(difference_table(f"search-{view}-paired", f"The search: differences, {seen}", groups, REFERENCE))
-    return Report(tuple(tables))
+    return Report(tuple(tables), figures)
 
 
 def mean_moves(rows: Sequence[Row]) -> float:
