@@ -8,6 +8,7 @@ import numpy as np
 
 from muybridge.filters import condensation
 from muybridge.filters.particles import FloatArray
+from muybridge.filters.schedule import exponent_for_survival, powered
 from muybridge.filters.state import Likelihood, State
 from muybridge.people.box import SPEED_X, BoxMotion, CountConfig, Y, adapted_count
 from muybridge.people.colour_likelihood import ColourConfig, ColourTarget, Picture
@@ -15,6 +16,9 @@ from muybridge.people.evidence import Evidence
 
 FILTER = condensation.Config(estimate="mean", resampling="systematic", particles=600)
 """(4.5) is the mean; the comb adds less variance than (4.8), (4.9) with independent numbers."""
+SURVIVAL = 0.1
+"""Share of the particles that goes on, at least. Where a sharp likelihood leaves one or two of them, nothing selects
+the velocities any more: they wander off, and the box with them. Flattened by a power, it leaves more."""
 START_SD = 1.0  # pixels: where somebody new is
 
 
@@ -66,4 +70,6 @@ class Filtered:
     def step(self, rng: np.random.Generator, likelihood: Likelihood, motion: BoxMotion, counts: CountConfig) -> None:
         """One frame, with as many particles as the last weights ask for (4.18)."""
         config = replace(FILTER, particles=adapted_count(self.state.log_weights, counts))
-        self.state, _ = condensation.step(rng, self.state, likelihood, motion, config)
+        exponent = exponent_for_survival(self.state.log_weights, SURVIVAL, highest=1.0)
+        selecting = replace(self.state, log_weights=powered(self.state.log_weights, exponent))
+        self.state, _ = condensation.step(rng, selecting, likelihood, motion, config)
