@@ -17,7 +17,7 @@ from muybridge.likelihood.colour import (
     mirrored_segments,
     update_reference,
 )
-from muybridge.likelihood.edges import EdgeCue, edge_map, stack_maps
+from muybridge.likelihood.edges import BLUR, MARGIN, EdgeCue, edge_map, stack_maps
 from muybridge.likelihood.fusion import Fusion, fuse
 from muybridge.likelihood.silhouette import KINDS, SilhouetteCue
 from reference import silhouette as slow
@@ -110,6 +110,32 @@ class TestValues:
         assert colour < -0.1 and silhouette > np.log(0.5)
 
 
+class TestHiddenEdges:
+    """Sedai 2013, IV-A2: points that are hidden by the body itself are discarded, (13) is the mean over the others."""
+
+    def _of_forearm(self, side: str, angles: tuple[float, ...]) -> np.ndarray:
+        """Log likelihoods with one elbow bent, seen from the left: the trunk and the left arm hide the right one."""
+        body, pose = standing()
+        poses = np.repeat(pose[None], len(angles), axis=0)
+        poses[:, body.dof_names.index(f"{side}_elbow_flexion")] = angles
+        maps = np.random.default_rng(20).random((1, *SIZE[::-1])).astype(np.float32)
+        left = body.joints(pose)[body.joint_names.index("left_shoulder")]
+        return EdgeCue(body.arrays, rows(camera(float(np.arctan2(left[1], left[0])))), maps).log_prob(poses)
+
+    def test_a_hidden_arm_does_not_count(self):
+        straight, bent = self._of_forearm("right", (0.0, 0.08))
+        assert bent == pytest.approx(straight, abs=1e-12)
+
+    def test_the_arm_before_the_trunk_does(self):
+        """Inner edges count: it is what silhouettes cannot see."""
+        straight, bent = self._of_forearm("left", (0.0, 0.08))
+        assert abs(bent - straight) > 1e-4
+
+    def test_an_arm_that_comes_out_from_behind_does(self):
+        straight, bent = self._of_forearm("right", (0.0, 1.5))
+        assert abs(bent - straight) > 1e-4
+
+
 class TestCameras:
     @pytest.mark.parametrize("name", CUES)
     def test_weights_average(self, scene, name):
@@ -194,6 +220,17 @@ class TestPictures:
         mask[:30] = True
         edges = edge_map(image, mask)
         assert edges[10, 39:41].min() > 0.9 and edges[45].max() < 0.01 and edges[10, 20] == 0.0
+
+    def test_edges_of_the_room_do_not_count(self):
+        """A door beside the person: what is farther from the mask than the margin and the blur's reach, 3 sd, is 0."""
+        image = np.zeros((60, 120, 3), np.uint8)
+        image[:, 20:40] = image[:, 100:] = 200
+        mask = np.zeros((60, 120), bool)
+        mask[:, 20:40] = True
+        edges = edge_map(image, mask)
+        assert edges[30, 19:21].min() > 0.9 and edges[30, 39:41].min() > 0.9
+        assert edges[:, 40 + MARGIN + int(3 * BLUR) + 1 :].max() < 0.01
+        assert edge_map(image, np.ones_like(mask))[30, 99:101].min() > 0.9, "the door is an edge where it may be one"
 
     def test_largest_component_drops_specks(self):
         mask = np.zeros((20, 20), bool)

@@ -61,7 +61,8 @@ class Config(annealed.Config):
         require("alpha", self.alpha is None or 0 <= self.alpha <= 1, "between 0 and 1", self.alpha)
 
 
-PRINTED = Config(estimate="mean")  # the expectation: section IV-B
+# The expectation: section IV-B. The costs' sum, (14): a likelihood of two cues is their mean.
+PRINTED = Config(estimate="mean", sharpness=2.0)
 WORKING = PRINTED
 
 #: The cases that the paper compares, section V-C: no layers is one, under the likelihood as it is.
