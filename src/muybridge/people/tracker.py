@@ -26,7 +26,8 @@ from muybridge.people.evidence import Evidence, ForegroundConfig
 from muybridge.people.filtered import Filtered, Frame
 from muybridge.people.histograms import to_luma_chroma
 from muybridge.people.identity import Identities, IdentityConfig
-from muybridge.people.part_filters import Parts
+from muybridge.people.failure import FailureDetector
+from muybridge.people.part_filters import PartRules, Parts
 from muybridge.people.parts import PartConfig
 from muybridge.people.person import TRUST_WHOLE, Person, Sighting, feet, follow, nearness
 from muybridge.people.scene import Scene
@@ -48,6 +49,7 @@ class TrackerConfig:
     foreground: ForegroundConfig = ForegroundConfig()
     identity: IdentityConfig = IdentityConfig()
     parts: PartConfig = PartConfig()
+    held: bool = True  # parts are expected on the body; false: they go where their colours are, as in the paper
     counts: CountConfig = CountConfig()
     blobs: BlobConfig = BlobConfig()  # where the ground's scale is not known
     variances: tuple[float, ...] = PRINTED_VARIANCES  # px^2 a frame, (4.3)
@@ -77,10 +79,18 @@ class PeopleTracker:
     config : TrackerConfig
     frame_rate : float, frames per second
     seed : int
+    detector : FailureDetector, optional
+        What says that a part must be repaired; nothing is where absent.
     """
 
     def __init__(
-        self, scene: Scene, config: TrackerConfig | None = None, *, frame_rate: float = 10.0, seed: int = 0
+        self,
+        scene: Scene,
+        config: TrackerConfig | None = None,
+        *,
+        frame_rate: float = 10.0,
+        seed: int = 0,
+        detector: FailureDetector | None = None,
     ) -> None:
         self.scene, self.config = scene, config or TrackerConfig()
         self.people: list[Person] = []
@@ -88,6 +98,8 @@ class PeopleTracker:
         self._rng = np.random.default_rng(seed)
         self._rate, self._count = frame_rate, 0
         self._motion = BoxMotion.within(scene.size, self.config.variances)
+        self._rules = PartRules(self._motion, self.config.counts, self.config.part_colour, self.config.parts,
+                                frame_rate, self.config.held, detector)  # fmt: skip
         self._background = to_luma_chroma(scene.background)
         smallest = self.config.smallest
         self._places = None if scene.ground is None else Places.on(scene.ground, scene.size, smallest)
@@ -128,7 +140,7 @@ class PeopleTracker:
         parts, box = None, person.body.box
         if person.parts is not None:
             trusted = person.visible >= TRUST_WHOLE and not person.missing
-            parts = person.parts.step(box, frame, self._motion, self.config.counts, trusted)
+            parts = person.parts.step(box, frame, trusted)
         score = min(1.0, person.visible) * person.filled
         person.sightings.append(Sighting(frame.number, box, score, not person.missing, parts))
         if not person.unseen:
@@ -173,8 +185,7 @@ class PeopleTracker:
         self._identities.step(frame.picture, frame.number, people, clear, self.gone)
         for person in people:
             if person in clear and person.parts is None:
-                colour, parts = self.config.part_colour, self.config.parts
-                person.parts = Parts.start(person.rng, person.body.box, frame, self._motion, colour, parts)
+                person.parts = Parts.start(person.rng, person.body.box, frame, self._rules)
 
     def _is_whole(self, person: Person) -> bool:
         full = person.filled > FULL * self.scene.silhouette.mean
