@@ -67,7 +67,7 @@ def test_another_size_is_refused(name):
 
 def test_unknown_names_and_settings_say_what_there_is():
     with pytest.raises(InputError, match="plate or gaussian or hue_key"):
-        build_background("mixture")
+        build_background("watershed")
     with pytest.raises(InputError, match="threshold"):
         build_background("plate", [np.zeros((4, 4, 3), np.uint8)], treshold=3)
     with pytest.raises(InputError, match="pictures of the empty scene"):

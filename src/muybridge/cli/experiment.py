@@ -28,7 +28,7 @@ def experiment(
     Parameters
     ----------
     name
-        The paper: du-2005, sedai-2013.
+        The paper: du-2005, sedai-2013, zhao-2009.
     out
         Where results, tables and plots go; runs/NAME where absent.
     quick

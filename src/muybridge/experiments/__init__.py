@@ -3,9 +3,10 @@
 | module | what |
 |---|---|
 | `machine` | the hardware, versions and commit that a number belongs to |
-| `speed` | `BENCHMARKS`: likelihoods, filters, rendering; each a row of the table that `muybridge bench` prints |
+| `speed` | `BENCHMARKS`, the rows of `muybridge bench`: likelihoods, filters, rendering, backgrounds |
 | `harness` | `run_experiment`: an experiment from end to end; `EXPERIMENTS`, the papers there are |
 | `experiment` | what an experiment is: parts, cases, reports; how much is run |
+| `runnable` | what the harness asks of a trial, whatever its kind |
 | `trial` | one clip tracked once, described; its digest |
 | `scenes`, `clips` | from a clip's description to a scene, and to the evidence kept of it |
 | `bodies`, `spoiling` | right, fitted and wrong bodies; masks and cameras made worse on purpose |
@@ -13,4 +14,6 @@
 | `pool`, `store` | trials on several processes; results on disk |
 | `statistics`, `summaries`, `tables` | intervals over seeds, paired differences; tables of them |
 | `du_2005` | the thesis of the DE-MC particle filter |
+| `sedai_2013` | the annealed particle filter that is guided by silhouettes |
+| `zhao_2009` | the thesis of multi-part tracking in surveillance video |
 """

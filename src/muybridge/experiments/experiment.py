@@ -8,15 +8,14 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from muybridge.errors import InputError
-from muybridge.experiments.running import Result
 from muybridge.experiments.scenes import known_figures, known_motions
 from muybridge.experiments.tables import Table
-from muybridge.experiments.trial import Clip, Trial
+from muybridge.experiments.trial import Clip
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -27,14 +26,29 @@ DEFAULT_SEEDS, QUICK_SEEDS = 10, 2
 
 
 @dataclass(frozen=True)
-class Scale:
-    """How much is run.
-
-    seeds : of scene and tracker together; figures, motions : who does what; frames, rate : of a clip; preset : where
-    """
+class Amount:
+    """How much is run: a quick look or the whole; seeds, of scene and tracker together."""
 
     quick: bool
     seeds: int
+
+    def few(self, seeds: int) -> int:
+        """How many seeds where a trial is dear: so many, and one for a quick look."""
+        return 1 if self.quick else seeds
+
+    @property
+    def sentence(self) -> str:
+        """For people."""
+        return f"{self.seeds} seeds."
+
+
+@dataclass(frozen=True)
+class Scale(Amount):
+    """How much a 3D tracker is run.
+
+    figures, motions : who does what; frames, rate : of a clip; preset : where
+    """
+
     figures: tuple[str, ...]
     motions: tuple[str, ...]
     frames: int
@@ -50,9 +64,11 @@ class Scale:
             for motion in self.motions
         )
 
-    def few(self, seeds: int) -> int:
-        """How many seeds where a trial is dear: so many, and one for a quick look."""
-        return 1 if self.quick else seeds
+    @property
+    def sentence(self) -> str:
+        """For people."""
+        return (f"{self.seeds} seeds, {self.frames} frames a clip; people: {', '.join(self.figures)}; "
+                f"motions: {', '.join(self.motions)}.")  # fmt: skip
 
     def walks(self, *, view: str = "ring", seeds: int | None = None, reduction: int | None = 2) -> tuple[Clip, ...]:
         """The walks among the clips."""
@@ -73,7 +89,8 @@ class Case:
     """A trial and the line of a table it counts to; `x` is where it stands on an axis, in parts that draw curves."""
 
     label: str
-    trial: Trial
+    trial: Any
+    """A `RunnableTrial`."""
     x: float = float("nan")
 
 
@@ -82,17 +99,18 @@ class Row:
     """A case that was run."""
 
     case: Case
-    result: Result
+    result: Any
+    """What the trial's `run` returned."""
 
     @property
     def key(self) -> tuple[int, str]:
         """Seed and scene: rows of two filters with the same key are a pair."""
         clip = self.case.trial.clip
-        return clip.seed, f"{clip.figure} {clip.motion} {clip.view}"
+        return clip.seed, clip.scene
 
     @property
     def error_mm(self) -> float:
-        """Mean joint error, a frame counting at most LOST_MM."""
+        """Of a 3D track: mean joint error, a frame counting at most LOST_MM."""
         return float(np.minimum(self.result.frame_mm, LOST_MM).mean())
 
 
@@ -101,7 +119,8 @@ class Outcome:
     """The rows of one part, where files lie, and how much was run."""
 
     rows: tuple[Row, ...]
-    scale: Scale
+    scale: Any
+    """The experiment's `Amount`."""
     folder: Path
 
     def groups(self, rows: Sequence[Row] | None = None) -> Mapping[str, list[Row]]:
@@ -124,7 +143,7 @@ class Report:
     figures: Mapping[str, Figure] = field(default_factory=dict)
 
 
-def no_cases(scale: Scale) -> Iterator[Case]:
+def no_cases(scale: Amount) -> Iterator[Case]:
     """For parts that only draw."""
     return iter(())
 
@@ -144,10 +163,10 @@ class Part:
     name: str
     title: str
     report: Callable[[Outcome], Report]
-    cases: Callable[[Scale], Iterator[Case]] = no_cases
+    cases: Callable[[Any], Iterator[Case]] = no_cases
 
 
-def nothing_first(scale: Scale, folder: Path, workers: int) -> None:
+def nothing_first(scale: Amount, folder: Path, workers: int) -> None:
     """For experiments whose trials need nothing but themselves."""
 
 
@@ -165,8 +184,8 @@ class Experiment:
     name: str
     title: str
     parts: tuple[Part, ...]
-    scale: Callable[[bool, int | None], Scale] = scale_of
-    prepare: Callable[[Scale, Path, int], None] = nothing_first
+    scale: Callable[[bool, int | None], Amount] = scale_of
+    prepare: Callable[[Any, Path, int], None] = nothing_first
 
     def chosen(self, only: Sequence[str] = ()) -> tuple[Part, ...]:
         """The parts named, in the experiment's order; all where none is named."""

@@ -3,23 +3,26 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Hashable, Sequence
+from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
 
 from muybridge.errors import InputError
-from muybridge.experiments.experiment import Case, Experiment, Outcome, Part, Report, Row, Scale
+from muybridge.experiments.experiment import Amount, Case, Experiment, Outcome, Part, Report, Row
 from muybridge.experiments.machine import describe_machine
 from muybridge.experiments.pool import Progress, run_trials
-from muybridge.experiments.running import run_trial
+from muybridge.experiments.runnable import RunnableTrial
 from muybridge.experiments.store import Store, claim
-from muybridge.experiments.trial import Trial
 from muybridge.io.disk import disk_errors, make_folder, replace_file
 from muybridge.plotting.style import to_png, to_svg
 
 #: name -> package; imported when asked for.
-EXPERIMENTS = {"du-2005": "muybridge.experiments.du_2005", "sedai-2013": "muybridge.experiments.sedai_2013"}
+EXPERIMENTS = {
+    "du-2005": "muybridge.experiments.du_2005",
+    "sedai-2013": "muybridge.experiments.sedai_2013",
+    "zhao-2009": "muybridge.experiments.zhao_2009",
+}
 RESULTS, PLOTS, REPORT_FILE = "results", "plots", "results.md"
 
 
@@ -45,7 +48,7 @@ def experiment(name: str) -> Experiment:
 
 def run_experiment(
     asked: Experiment,
-    scale: Scale,
+    scale: Amount,
     out: Path,
     *,
     only: Sequence[str] = (),
@@ -80,18 +83,16 @@ def run_experiment(
     return Summary(asked.name, len(trials), len(missing), tuple(p.name for p in parts), tables, plots, report)
 
 
-def warm_up(trials: Sequence[Trial], folder: Path) -> None:
+def warm_up(trials: Sequence[RunnableTrial], folder: Path) -> None:
     """Compile here what the trials need, so that workers find it in the cache and do not race to write it."""
-    seen = set()
+    seen: set[Hashable] = {None}
     for trial in trials:
-        kind = trial.method, trial.cues, trial.body
-        if kind not in seen and trial.masks != "job":
-            seen.add(kind)
-            short = replace(trial.clip, frames=2, reduction=8)
-            run_trial(replace(trial, clip=short, keep_track=False, gap=()), folder)
+        if trial.kernels not in seen:
+            seen.add(trial.kernels)
+            trial.rehearse(folder)
 
 
-def _outcome(cases: Sequence[Case], store: Store, scale: Scale, out: Path) -> Outcome:
+def _outcome(cases: Sequence[Case], store: Store, scale: Amount, out: Path) -> Outcome:
     return Outcome(tuple(Row(case, store[case.trial]) for case in cases), scale, out)
 
 
@@ -111,10 +112,9 @@ def write_reports(reports: dict[Part, Report], out: Path) -> tuple[tuple[Path, .
     return tuple(tables), tuple(plots)
 
 
-def _write_page(asked: Experiment, scale: Scale, reports: dict[Part, Report], out: Path) -> Path:
+def _write_page(asked: Experiment, scale: Amount, reports: dict[Part, Report], out: Path) -> Path:
     """One page with every table and plot, and what they were measured on."""
-    lines = [f"# {asked.title}", "", f"{scale.seeds} seeds, {scale.frames} frames a clip; people: "
-             f"{', '.join(scale.figures)}; motions: {', '.join(scale.motions)}."]  # fmt: skip
+    lines = [f"# {asked.title}", "", scale.sentence]
     machine = describe_machine()
     lines += ["", "Measured on " + ", ".join(f"{name} {value}" for name, value in machine.items()) + ".", ""]
     for part, report in reports.items():

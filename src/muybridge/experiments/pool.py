@@ -15,16 +15,17 @@ from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wai
 from contextlib import contextmanager
 from multiprocessing import get_context
 from pathlib import Path
-from typing import Protocol
+from typing import Any, Protocol
 
 from threadpoolctl import threadpool_limits
 
-from muybridge.experiments.clips import drop_pictures, evidence_of
-from muybridge.experiments.running import EVIDENCE, Result, run_trial
-from muybridge.experiments.trial import Clip, Trial
+from muybridge.experiments.runnable import RunnableClip, RunnableTrial
 
 ONE_THREAD = {name: "1" for name in ("NUMBA_NUM_THREADS", "OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")}
-Keep = Callable[[Trial, Result], None]
+Keep = Callable[[Any, Any], None]
+"""Takes a trial and its result."""
+Groups = dict[Any, list[Any]]
+"""Trials by their clip."""
 
 
 class Progress(Protocol):
@@ -34,7 +35,7 @@ class Progress(Protocol):
 
 
 def run_trials(
-    trials: Sequence[Trial], folder: Path, keep: Keep, *, workers: int = 1, progress: Progress | None = None
+    trials: Sequence[RunnableTrial], folder: Path, keep: Keep, *, workers: int = 1, progress: Progress | None = None
 ) -> None:
     """Run trials and hand each result to `keep`, as it comes; clip by clip, in the order given."""
     groups = by_clip(trials)
@@ -44,52 +45,52 @@ def run_trials(
         _beside(groups, folder, keep, progress, len(trials), workers)
 
 
-def by_clip(trials: Sequence[Trial]) -> dict[Clip, list[Trial]]:
+def by_clip(trials: Sequence[RunnableTrial]) -> Groups:
     """The trials of each clip, both in the order of their first appearance; what appears twice is run once."""
-    groups: dict[Clip, list[Trial]] = {}
+    groups: Groups = {}
     for trial in dict.fromkeys(trials):
         groups.setdefault(trial.clip, []).append(trial)
     return groups
 
 
-def _here(groups: dict[Clip, list[Trial]], folder: Path, keep: Keep, progress: Progress | None, total: int) -> None:
+def _here(groups: Groups, folder: Path, keep: Keep, progress: Progress | None, total: int) -> None:
     done = 0
     with threadpool_limits(limits=1, user_api="blas"):
         for clip, trials in groups.items():
-            prepare_clip(clip, folder, _need_pictures(trials))
+            clip.prepare(folder, trials)
             for trial in trials:
-                keep(trial, run_trial(trial, folder))
+                keep(trial, trial.run(folder))
                 done += 1
                 if progress:
                     progress(done, total)
-            drop_pictures(clip, folder / EVIDENCE)
+            clip.drop(folder)
 
 
-def _beside(
-    groups: dict[Clip, list[Trial]], folder: Path, keep: Keep, progress: Progress | None, total: int, workers: int
-) -> None:
+def _beside(groups: Groups, folder: Path, keep: Keep, progress: Progress | None, total: int, workers: int) -> None:
     """The same on `workers` processes: a window of clips is prepared ahead of their trials."""
     waiting = list(groups.items())
     left = {clip: len(trials) for clip, trials in groups.items()}
-    running: dict[Future, Clip | Trial] = {}
+    preparing: dict[Future, RunnableClip] = {}
+    running: dict[Future, RunnableTrial] = {}
     done = 0
     with _executor(workers) as executor:
         try:
-            while waiting or running:
-                while waiting and len(running) < 2 * workers:
+            while waiting or preparing or running:
+                while waiting and len(preparing) + len(running) < 2 * workers:
                     clip, trials = waiting.pop(0)
-                    running[executor.submit(prepare_clip, clip, folder, _need_pictures(trials))] = clip
-                finished, _ = wait(running, return_when=FIRST_COMPLETED)
+                    preparing[executor.submit(prepare_clip, clip, folder, trials)] = clip
+                finished, _ = wait([*preparing, *running], return_when=FIRST_COMPLETED)
                 for future in finished:
-                    task = running.pop(future)
-                    if isinstance(task, Clip):
+                    if future in preparing:
                         future.result()
-                        running |= {executor.submit(run_trial, trial, folder): trial for trial in groups[task]}
+                        trials = groups[preparing.pop(future)]
+                        running |= {executor.submit(run_trial, trial, folder): trial for trial in trials}
                         continue
-                    keep(task, future.result())
-                    done, left[task.clip] = done + 1, left[task.clip] - 1
-                    if not left[task.clip]:
-                        drop_pictures(task.clip, folder / EVIDENCE)
+                    trial = running.pop(future)
+                    keep(trial, future.result())
+                    done, left[trial.clip] = done + 1, left[trial.clip] - 1
+                    if not left[trial.clip]:
+                        trial.clip.drop(folder)
                     if progress:
                         progress(done, total)
         except BaseException:
@@ -97,21 +98,22 @@ def _beside(
             raise
 
 
-def _keep_finished(executor: ProcessPoolExecutor, running: dict[Future, Clip | Trial], keep: Keep) -> None:
+def _keep_finished(executor: ProcessPoolExecutor, running: dict[Future, RunnableTrial], keep: Keep) -> None:
     """Start nothing new, wait for what runs, and keep what came of it."""
     executor.shutdown(wait=True, cancel_futures=True)
-    for future, task in running.items():
-        if isinstance(task, Trial) and not future.cancelled() and future.exception() is None:
-            keep(task, future.result())
+    for future, trial in running.items():
+        if not future.cancelled() and future.exception() is None:
+            keep(trial, future.result())
 
 
-def prepare_clip(clip: Clip, folder: Path, pictures: bool) -> None:
-    """Make a clip's evidence where it is not there yet."""
-    evidence_of(clip, folder / EVIDENCE, pictures=pictures)
+def prepare_clip(clip: RunnableClip, folder: Path, trials: Sequence[RunnableTrial]) -> None:
+    """In a worker: what the trials need of their clip."""
+    clip.prepare(folder, trials)
 
 
-def _need_pictures(trials: Sequence[Trial]) -> bool:
-    return any(trial.cues.need_pictures for trial in trials)
+def run_trial(trial: RunnableTrial, folder: Path) -> Any:
+    """In a worker: the result."""
+    return trial.run(folder)
 
 
 @contextmanager

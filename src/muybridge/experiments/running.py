@@ -17,7 +17,7 @@ from muybridge.evaluation.angles import joint_angles
 from muybridge.experiments.bodies import body_of_trial, fitted, start_pose, wrong_pose
 from muybridge.experiments.clips import Evidence, evidence_of
 from muybridge.experiments.spoiling import shifted_rig, spoilt_mask
-from muybridge.experiments.trial import Clip, Faults, Trial
+from muybridge.experiments.trial import EVIDENCE, Clip, Faults, Trial
 from muybridge.io.disk import make_folder
 from muybridge.io.run_folder import JointSeries, write_joints
 from muybridge.likelihood.observation import ImageLikelihood, Observation
@@ -26,7 +26,7 @@ from muybridge.tracking.silhouette_guesser import SilhouetteGuesser
 from muybridge.tracking.spread import MEASURED, SpreadConfig
 from muybridge.tracking.tracker import Tracker, TrackerConfig
 
-EVIDENCE, TRACKS, SCENES, MODELS = "evidence", "tracks", "scenes", "models"  # folders of an experiment
+TRACKS, SCENES, MODELS = "tracks", "scenes", "models"  # folders of an experiment
 PLACE = ("pelvis",)
 LEGS = ("left_knee", "right_knee", "left_ankle", "right_ankle")
 ARMS = ("left_elbow", "right_elbow", "left_wrist", "right_wrist")

@@ -20,6 +20,7 @@ from muybridge.filters import METHODS, GaussianWalk
 from muybridge.likelihood.benchmark import bench_scene, time_likelihood
 from muybridge.likelihood.cues import CueWeights
 from muybridge.likelihood.observation import ImageLikelihood, Observation
+from muybridge.segmentation.benchmark import time_backgrounds
 from muybridge.synthetic.benchmark import time_rendering
 from muybridge.synthetic.scene import demo_scene, render, truth
 from muybridge.tracking.tracker import Tracker, TrackerConfig
@@ -124,12 +125,24 @@ def rendering(rng: np.random.Generator) -> Iterator[Measurement]:
         yield Measurement(f"{timing.name}, 640 x 480", timing.frames_per_second, "frames/s", RENDERED)
 
 
+BACKGROUNDS = {"spatial": (30.0, 100.0), "mixture": (60.0, 200.0)}
+"""Frames in a second of two cores, at least and aim; measured here on one."""
+
+
+def backgrounds(rng: np.random.Generator) -> Iterator[Measurement]:
+    """Learning and testing a picture of 320 x 240, CPU time of one thread; see `muybridge.segmentation.benchmark`."""
+    for timing in time_backgrounds():
+        floor, aim = BACKGROUNDS.get(timing.name, (None, None))
+        yield Measurement(f"{timing.name} background, 320 x 240", timing.frames_per_second, "frames/s", floor, aim)
+
+
 BENCHMARKS: dict[str, Callable[[np.random.Generator], Iterator[Measurement]]] = {
     "likelihood": likelihood,
     "demc": printed_demc,
     "observation": observation,
     "filters": filters,
     "render": rendering,
+    "background": backgrounds,
 }
 
 

@@ -14,19 +14,18 @@ from pathlib import Path
 from typing import Any
 
 from muybridge.errors import InputError
-from muybridge.experiments.running import Result
-from muybridge.experiments.trial import Trial
+from muybridge.experiments.runnable import RunnableTrial
 from muybridge.io.disk import disk_errors, make_folder, replace_file
 
 ROWS_FILE, CONFIGURATION_FILE = "results.jsonl", "experiment.json"
 
 
 class Store:
-    """The results of an experiment's folder, by the digest of their trial."""
+    """The results of an experiment's folder, by the digest of their trial, which knows how to read them."""
 
     def __init__(self, folder: Path) -> None:
         self.path = folder / ROWS_FILE
-        self._results: dict[str, Result] = {}
+        self._results: dict[str, dict[str, Any]] = {}
         whole = 0
         if self.path.is_file():
             with disk_errors(self.path):
@@ -40,23 +39,24 @@ class Store:
             self._file = open(self.path, "ab")
             self._file.truncate(whole)
 
-    def __contains__(self, trial: Trial) -> bool:
-        return trial.digest in self._results
+    def __contains__(self, trial: RunnableTrial) -> bool:
+        try:
+            self[trial]
+        except (ValueError, KeyError, TypeError):
+            return False
+        return True
 
-    def __getitem__(self, trial: Trial) -> Result:
-        return self._results[trial.digest]
+    def __getitem__(self, trial: RunnableTrial) -> Any:
+        return trial.result(self._results[trial.digest])
 
-    def __len__(self) -> int:
-        return len(self._results)
-
-    def append(self, trial: Trial, result: Result) -> None:
-        """Keep a result; it is on the disk when this returns."""
+    def append(self, trial: RunnableTrial, result: Any) -> None:
+        """Keep a result, a dataclass; it is on the disk when this returns."""
         entry = {"digest": trial.digest, "trial": trial.description, "result": _finite(asdict(result))}
         with disk_errors(self.path):
             self._file.write(json.dumps(entry, allow_nan=False).encode() + b"\n")
             self._file.flush()
             os.fsync(self._file.fileno())
-        self._results[trial.digest] = result
+        self._results[trial.digest] = entry["result"]
 
     def close(self) -> None:
         """Close the file; doing so twice is fine."""
@@ -122,11 +122,11 @@ def _described(configuration: dict[str, Any]) -> str:
     return " ".join(f"{name}={value}" for name, value in configuration.items())
 
 
-def _entry(line: bytes) -> tuple[str, Result] | None:
-    """A line's digest and result; None where it is of another version, which is left alone."""
+def _entry(line: bytes) -> tuple[str, dict[str, Any]] | None:
+    """A line's digest and result; None where it is something else, which is left alone."""
     try:
         entry = json.loads(line)
-        return str(entry["digest"]), Result.from_dict(entry["result"])
+        return str(entry["digest"]), dict(entry["result"])
     except (ValueError, KeyError, TypeError):
         return None
 

@@ -6,9 +6,10 @@ it has. The digest covers the filter's settings as they are resolved: a default 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
-from typing import Any
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 from muybridge.errors import InputError
 from muybridge.filters import method
@@ -17,6 +18,10 @@ from muybridge.io.run_log import job_digest
 from muybridge.likelihood.cues import CueWeights
 from muybridge.tracking.motion import SEARCHING, Motion, motion_of
 
+if TYPE_CHECKING:
+    from muybridge.experiments.running import Result
+
+EVIDENCE = "evidence"  # folder of an experiment
 VERSION = 4  # raise it when a trial of the same description gives another result
 MASKS, MASK_FAULTS = ("own", "true", "job"), ("", "eroded", "dilated", "holes")
 BODIES, TORSOS = ("right", "height"), ("elliptical", "round")
@@ -53,6 +58,23 @@ class Clip:
     def digest(self) -> str:
         """The name of its evidence on disk."""
         return job_digest({"version": VERSION, **asdict(self)})[:16]
+
+    @property
+    def scene(self) -> str:
+        """Who does what, and seen from where."""
+        return f"{self.figure} {self.motion} {self.view}"
+
+    def prepare(self, folder: Path, trials: Sequence[Trial]) -> None:
+        """Make the evidence where it is not there yet; pictures for trials whose cues look at them."""
+        from muybridge.experiments.clips import evidence_of
+
+        evidence_of(self, folder / EVIDENCE, pictures=any(trial.cues.need_pictures for trial in trials))
+
+    def drop(self, folder: Path) -> None:
+        """Delete the pictures, which are large."""
+        from muybridge.experiments.clips import drop_pictures
+
+        drop_pictures(self, folder / EVIDENCE)
 
 
 @dataclass(frozen=True)
@@ -148,6 +170,28 @@ class Trial:
     def digest(self) -> str:
         """The key under which its result is kept."""
         return job_digest(self.description)[:16]
+
+    @property
+    def kernels(self) -> Hashable:
+        """The filter, its cues and the body; nothing is rehearsed for a job, which is another process's."""
+        return None if self.masks == "job" else (self.method, self.cues, self.body)
+
+    def rehearse(self, folder: Path) -> None:
+        """Two small frames."""
+        short = replace(self.clip, frames=2, reduction=8)
+        replace(self, clip=short, keep_track=False, gap=()).run(folder)
+
+    def run(self, folder: Path) -> Result:
+        """Track the clip."""
+        from muybridge.experiments.running import run_trial
+
+        return run_trial(self, folder)
+
+    def result(self, values: Mapping[str, Any]) -> Result:
+        """From `asdict` by way of JSON."""
+        from muybridge.experiments.running import Result
+
+        return Result.from_dict(values)
 
     def with_settings(self, **settings: Any) -> Trial:
         """The same with filter settings replaced."""

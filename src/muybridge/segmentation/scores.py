@@ -32,7 +32,7 @@ class MaskCounts:
     Examples
     --------
     >>> counts = MaskCounts(true_positives=80, false_positives=20, false_negatives=20, true_negatives=880)
-    >>> counts.f_measure, counts.wrong_percent
+    >>> round(counts.f_measure, 6), counts.wrong_percent
     (0.8, 4.0)
     """
 

@@ -14,10 +14,10 @@ from muybridge.experiments.bodies import start_pose
 from muybridge.experiments.clips import Evidence, evidence_of
 from muybridge.experiments.du_2005.conditions import THREE_CUES, at_shape, working
 from muybridge.experiments.experiment import Case, Outcome, Part, Report, Scale
-from muybridge.experiments.running import EVIDENCE, TRACKS
+from muybridge.experiments.running import TRACKS
 from muybridge.experiments.scenes import right_body
 from muybridge.experiments.tables import Cell, Column, Table
-from muybridge.experiments.trial import Clip
+from muybridge.experiments.trial import EVIDENCE, Clip
 from muybridge.io.run_folder import read_joints
 from muybridge.likelihood.cues import CueWeights
 from muybridge.likelihood.observation import ImageLikelihood

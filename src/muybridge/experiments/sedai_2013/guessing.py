@@ -9,10 +9,9 @@ import numpy as np
 from muybridge.experiments.bodies import body_of_trial
 from muybridge.experiments.clips import Evidence, evidence_of
 from muybridge.experiments.experiment import Outcome, Part, Report, Scale
-from muybridge.experiments.running import EVIDENCE
 from muybridge.experiments.sedai_2013.conditions import model_of, one_camera
 from muybridge.experiments.tables import Cell, Column, Table
-from muybridge.experiments.trial import Clip, Trial
+from muybridge.experiments.trial import EVIDENCE, Clip, Trial
 from muybridge.likelihood.observation import ImageLikelihood
 from muybridge.plotting.style import new_figure
 from muybridge.regression import PRINTED_TRUSTED_VARIANCE, PoseMixture, SilhouetteRegressor

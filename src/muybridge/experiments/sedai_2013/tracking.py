@@ -10,11 +10,12 @@ import numpy as np
 from muybridge.evaluation.angles import angle_deviations, joint_angles
 from muybridge.experiments.clips import evidence_of
 from muybridge.experiments.experiment import LOST_MM, Case, Outcome, Part, Report, Row, Scale
-from muybridge.experiments.running import EVIDENCE, TRACKS
+from muybridge.experiments.running import TRACKS
 from muybridge.experiments.sedai_2013.conditions import NAMES, guided, one_camera, over, printed, working
 from muybridge.experiments.statistics import over_seeds
 from muybridge.experiments.summaries import SUMMARY_NOTES, coverage_table, difference_table, error, values
 from muybridge.experiments.tables import Cell, Column, Table
+from muybridge.experiments.trial import EVIDENCE
 from muybridge.io.run_folder import read_joints
 from muybridge.plotting.angles import plot_joint_angles
 from muybridge.plotting.experiments import plot_budgets, plot_intervals

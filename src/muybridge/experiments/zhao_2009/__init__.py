@@ -1,0 +1,23 @@
+"""The experiments of Zhao (2009), chapter 6, on rendered surveillance clips whose truth is known.
+
+"Multi-part tracking of people in surveillance video", dissertation. `papers/zhao-2009/README.md` holds its claims
+against our numbers.
+
+| module | what |
+|---|---|
+| `conditions` | how much is run, and what kinds of trials share |
+| `speed` | background models, frames a second |
+"""
+
+from muybridge.experiments.experiment import Experiment
+from muybridge.experiments.zhao_2009.conditions import amount_of
+from muybridge.experiments.zhao_2009.speed import SPEED
+
+EXPERIMENT = Experiment(
+    "zhao-2009",
+    "Zhao (2009), multi-part tracking in surveillance video",
+    (SPEED,),
+    scale=amount_of,
+)
+
+__all__ = ["EXPERIMENT"]
