@@ -83,7 +83,7 @@ def follow_labelled(
             if person in following:
                 one = following[person]
                 one.tracker.step(frame)
-            elif person in finished or not _is_whole(shot, k, size):
+            elif person in finished or not is_whole(shot, k, size):
                 continue
             else:
                 body = states_from_boxes(shot.boxes[k])[0]
@@ -126,7 +126,7 @@ def _evidence(shot: PeopleShot, person: int) -> Evidence:
     return Evidence(own, Silhouette.flat(), hidden=(shot.ids > 0) & ~own)
 
 
-def _is_whole(shot: PeopleShot, k: int, size: tuple[int, int]) -> bool:
+def is_whole(shot: PeopleShot, k: int, size: tuple[int, int]) -> bool:
     left, top, width, height = shot.boxes[k]
     inside = left >= 0 and top >= 0 and left + width <= size[0] and top + height <= size[1]
     return bool(inside and shot.visible[k] >= WHOLE)

@@ -9,13 +9,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from muybridge.errors import InputError
 from muybridge.filters.particles import FloatArray
+from muybridge.io._tables import override, replaced
 from muybridge.people.box import HEIGHT, BoxMotion, CountConfig
 from muybridge.people.colour_likelihood import ColourConfig
 from muybridge.people.failure import FailureDetector, History
@@ -40,11 +41,11 @@ class RepairTraining:
 
     scenes: int = 6
     held_out: int = 2  # of the scenes, to move the machines and to judge them
-    duration_s: float = 24.0  # of a scene
+    duration_s: float = 16.0  # of a scene
     frame_rate: float = 25.0
     people: int = 4
-    spread: float = 0.6  # of the parts' colour likelihood, see `ColourConfig`
-    restart_s: float = 4.0  # after which everybody starts at the truth again
+    spread: float = 0.2  # of the parts' colour likelihood, see `ColourConfig`
+    restart_s: float = 6.0  # after which everybody starts at the truth again
     every: int = 3  # frames from one example to the next
     good: float = 0.6  # share of a part's box that lies on the part: a good example from,
     failed: float = 0.3  # a failure up to
@@ -55,12 +56,19 @@ class RepairTraining:
 
     def __post_init__(self) -> None:
         if not (1 <= self.held_out < self.scenes and 0 <= self.failed < self.good <= 1 and self.every >= 1):
-            raise InputError("training", expected="1 <= held_out < scenes, failed < good in 0..1, every from 1",
-                             got=f"{self.held_out}, {self.scenes}, {self.failed}, {self.good}, {self.every}")  # fmt: skip
+            got = f"{self.held_out}, {self.scenes}, {self.failed}, {self.good}, {self.every}"
+            raise InputError("training", expected="1 <= held_out < scenes, failed < good in 0..1, every from 1", got=got)
         positive = self.duration_s, self.frame_rate, self.spread, self.restart_s, self.penalty, self.kernel
         if not (min(positive) > 0 and 0 <= self.false_alarms < 1):
             raise InputError("training", expected="times, spread, penalty and kernel above 0, false_alarms in [0, 1)",
                              got=f"{positive}, {self.false_alarms}")  # fmt: skip
+
+    def with_settings(self, settings: Sequence[str]) -> RepairTraining:
+        """These settings with KEY=VALUE, such as scenes=8, put over them."""
+        table: dict[str, Any] = {}
+        for text in settings:
+            override(table, text)
+        return replaced(self, table, "--set")
 
     def rules(self, size: tuple[int, int]) -> PartRules:
         """The thesis' tracker in pictures (width, height): parts go where their colours are."""

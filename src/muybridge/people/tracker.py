@@ -23,10 +23,10 @@ from muybridge.people.box import PRINTED_VARIANCES, BoxMotion, CountConfig, boxe
 from muybridge.people.colour_likelihood import ColourConfig, Picture
 from muybridge.people.detect import Places, find_standing
 from muybridge.people.evidence import Evidence, ForegroundConfig
+from muybridge.people.failure import FailureDetector
 from muybridge.people.filtered import Filtered, Frame
 from muybridge.people.histograms import to_luma_chroma
 from muybridge.people.identity import Identities, IdentityConfig
-from muybridge.people.failure import FailureDetector
 from muybridge.people.part_filters import PartRules, Parts
 from muybridge.people.parts import PartConfig
 from muybridge.people.person import TRUST_WHOLE, Person, Sighting, feet, follow, nearness
