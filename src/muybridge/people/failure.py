@@ -24,7 +24,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from muybridge.archive import INCOMPLETE, Kind, incomplete
+from muybridge.archive import INCOMPLETE, Arrays, Kind, incomplete
 from muybridge.filters.particles import FloatArray
 from muybridge.people.box import SPEED_X
 from muybridge.people.parts import PARTS
@@ -93,16 +93,15 @@ def load_detector(path: str | Path) -> FailureDetector:
     what = f"failure detector {path}"
     header, arrays = KIND.load(what, path)
     try:
-        machines = [
-            SupportVectors(
-                **{array: arrays[f"{name}_{array}"] for array in ARRAYS},
-                **{key: float(header["machines"][name][key]) for key in ("offset", "gamma")},
-            )
-            for name in MACHINES
-        ]
+        machines = [_machine(name, header["machines"][name], arrays) for name in MACHINES]
     except INCOMPLETE as error:
         raise incomplete(what, f"four machines: {', '.join(MACHINES)}", error) from error
     return FailureDetector(tuple(machines[:-1]), machines[-1])
+
+
+def _machine(name: str, numbers: dict[str, float], arrays: Arrays) -> SupportVectors:
+    vectors, coefficients, centre, scale = (arrays[f"{name}_{array}"] for array in ARRAYS)
+    return SupportVectors(vectors, coefficients, centre, scale, float(numbers["offset"]), float(numbers["gamma"]))
 
 
 @lru_cache(maxsize=2)

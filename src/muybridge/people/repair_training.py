@@ -57,7 +57,9 @@ class RepairTraining:
     def __post_init__(self) -> None:
         if not (1 <= self.held_out < self.scenes and 0 <= self.failed < self.good <= 1 and self.every >= 1):
             got = f"{self.held_out}, {self.scenes}, {self.failed}, {self.good}, {self.every}"
-            raise InputError("training", expected="1 <= held_out < scenes, failed < good in 0..1, every from 1", got=got)
+            raise InputError(
+                "training", expected="1 <= held_out < scenes, failed < good in 0..1, every from 1", got=got
+            )
         positive = self.duration_s, self.frame_rate, self.spread, self.restart_s, self.penalty, self.kernel
         if not (min(positive) > 0 and 0 <= self.false_alarms < 1):
             raise InputError("training", expected="times, spread, penalty and kernel above 0, false_alarms in [0, 1)",

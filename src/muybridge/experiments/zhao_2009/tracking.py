@@ -106,7 +106,7 @@ def cases(scale: Amount) -> Iterator[Case]:
 
 def report(outcome: Outcome) -> Report:
     """Deviation and speed against the number of particles."""
-    from muybridge.plotting.experiments import plot_budgets
+    from muybridge.plotting.people_curves import plot_deviation
     from muybridge.plotting.style import new_figure
 
     found: dict[tuple[str, int], list[Any]] = {}
@@ -131,8 +131,7 @@ def report(outcome: Outcome) -> Report:
             highs.append(off.high)
         curves[method] = tuple(np.array(values, dtype=np.float64) for values in (counts, means, lows, highs))
     figure, axes = new_figure(1, 1)
-    plot_budgets(axes[0, 0], curves, "Centre deviation, px")
-    axes[0, 0].set_xlabel("particles")
+    plot_deviation(axes[0, 0], curves, "Centre deviation")
     columns = (Column("method"), Column("particles", 0), Column("deviation, px"), Column("thesis, own clips"),
                Column("thesis, CAVIAR"), Column("frames/s", 0), Column("thesis, CAVIAR, frames/s"),
                Column("people", 0))  # fmt: skip
