@@ -25,6 +25,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from muybridge.archive import INCOMPLETE, Arrays, Kind, incomplete
+from muybridge.errors import InputError
 from muybridge.filters.particles import FloatArray
 from muybridge.people.box import SPEED_X
 from muybridge.people.parts import PARTS
@@ -34,6 +35,7 @@ LOOK_BACK_S = 0.5  # Delta t, section 5.3
 SHIPPED = Path(__file__).parent / "models" / "repair.npz"
 KIND = Kind("muybridge-repair", 1, "train-repair")
 MACHINES = (*PARTS, "several")
+FEATURES = 2 * len(PARTS) * 6
 
 
 def relative_states(states: FloatArray, height: float, frame_rate: float) -> FloatArray:
@@ -70,6 +72,13 @@ class FailureDetector:
     parts: tuple[SupportVectors, ...]
     several: SupportVectors
 
+    def __post_init__(self) -> None:
+        sizes = [machine.vectors.shape[1] for machine in (*self.parts, self.several)]
+        if sizes != [FEATURES] * len(MACHINES):
+            raise InputError(
+                "failure detector", expected=f"{len(MACHINES)} machines of {FEATURES} features", got=str(sizes)
+            )
+
     def failed(self, features: FloatArray) -> NDArray[np.bool_]:
         """(3,) which failed, given (36,): none, one, or all where it cannot be told which."""
         margins = np.array([float(machine.margins(features)[0]) for machine in self.parts])
@@ -94,9 +103,10 @@ def load_detector(path: str | Path) -> FailureDetector:
     header, arrays = KIND.load(what, path)
     try:
         machines = [_machine(name, header["machines"][name], arrays) for name in MACHINES]
-    except INCOMPLETE as error:
+        detector = FailureDetector(tuple(machines[:-1]), machines[-1])
+    except (*INCOMPLETE, InputError) as error:
         raise incomplete(what, f"four machines: {', '.join(MACHINES)}", error) from error
-    return FailureDetector(tuple(machines[:-1]), machines[-1])
+    return detector
 
 
 def _machine(name: str, numbers: dict[str, float], arrays: Arrays) -> SupportVectors:

@@ -104,7 +104,9 @@ def _door(rng: np.random.Generator, duration: float, opens: bool) -> list[Occlud
     wall = ROOM.half_width - 0.06
     side = float(rng.uniform(-2.5, 2.5))
     wood, begin = (62, 84, 108), float(rng.uniform(0.25, 0.4)) * duration
-    beyond = Occluder("box", (wall + 0.04, side), (0.04, DOOR[0], DOOR[2]), 0.0, "blotches", (196, 206, 210), (168, 184, 190))
+    beyond = Occluder(
+        "box", (wall + 0.04, side), (0.04, DOOR[0], DOOR[2]), 0.0, "blotches", (196, 206, 210), (168, 184, 190)
+    )
     leaves = []
     for step in range(STEPS + 1):
         turn = 1.1 * step / STEPS
