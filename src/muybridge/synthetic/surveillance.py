@@ -7,7 +7,7 @@ decides who, where, when, and what they wear: everybody something else.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -74,7 +74,7 @@ def surveillance_scene(
     names, worn = rng.permutation(figure_names()), rng.permutation(list(OUTFITS))
     crowd = []
     for number, way in enumerate(ways):
-        motion = Motion("route", duration, rate, cadence=rng.uniform(0.84, 0.94), seed=1000 * seed + number, way=way)
+        motion = Motion("walk", duration, rate, cadence=rng.uniform(0.84, 0.94), seed=1000 * seed + number, way=way)
         person = Person(str(names[number % len(names)]), motion, outfit(str(worn[number % len(worn)])))
         crowd.append(dressed([seed, number], person, (0.0, 0.015)))
     things = (*_door(rng, duration, "door" in events), *([pillar] if pillar else []))
@@ -186,7 +186,7 @@ def _way(
 
 def _planned(way: Way, duration: float) -> tuple[np.ndarray, int]:
     """(T, 2) metres at PLAN_RATE, and the frame up to which the way as it is decides them."""
-    planned = plan(Motion("route", duration, PLAN_RATE, way=way), SPEED)
+    planned = plan(Motion("walk", duration, PLAN_RATE, way=way), SPEED)
     arrives = int(np.argmax(planned.walked >= planned.walked[-1] - 1e-6))
     return planned.places, arrives + int(np.ceil(way[-1][2] * PLAN_RATE)) + 1
 
