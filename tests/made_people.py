@@ -119,3 +119,32 @@ CROWD = [
     Walker((250, 110), (40, 230), 30, 89, 0),
 ]
 """Enough people in enough places to tell how the ground lies."""
+
+
+def part_boxes(walker: Walker, frame: int) -> np.ndarray:
+    """(3, 4) left, top, width, height of head, trunk, and the legs' upper halves."""
+    box = walker.box(frame)
+    assert box is not None
+    left, right, trunk, head = (
+        [rows.start, rows.stop, columns.start, columns.stop]
+        for rows, columns, _ in silhouette(box, abs(np.sin(0.5 * frame)))
+    )
+    legs = [left[0], (left[0] + left[1]) // 2, min(left[2], right[2]), max(left[3], right[3])]
+    return np.array([[x0, y0, x1 - x0, y1 - y0] for y0, y1, x0, x1 in (head, trunk, legs)], dtype=np.float64)
+
+
+def shots_of(walkers: list[Walker], frames: int, empty: np.ndarray, seed: int = 0):
+    """As a rendered scene would be: pictures with who is where, part by part."""
+    from muybridge.synthetic.crowd import PeopleShot
+
+    for frame in range(frames):
+        there = [k for k, walker in enumerate(walkers) if walker.box(frame) is not None]
+        ids = np.zeros(empty.shape[:2], np.uint8)
+        for k in sorted(there, key=lambda k: walkers[k].feet(frame)[1]):  # type: ignore[index]
+            ids[mask_of([walkers[k]], frame)] = k + 1
+        boxes = np.array([walkers[k].box(frame) for k in there]).reshape(-1, 4)
+        parts = np.array([part_boxes(walkers[k], frame) for k in there]).reshape(-1, 3, 4)
+        alone = [np.count_nonzero(mask_of([walkers[k]], frame)) for k in there]
+        visible = np.array([np.count_nonzero(ids == k + 1) / max(1, n) for k, n in zip(there, alone)])
+        yield PeopleShot(picture_of(walkers, frame, empty, seed=seed)[0], ids, np.array(there, np.int64) + 1, boxes,
+                         visible, parts, np.repeat(visible[:, None], 3, axis=1))  # fmt: skip

@@ -8,10 +8,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from muybridge.archive import checksum
 from muybridge.errors import InputError
 from muybridge.regression import PRINTED, WORKING, ClusterConfig, GateConfig, RegressionConfig, fit_regressor
 from muybridge.regression.components import PoseComponents
-from muybridge.regression.model_file import checksum, load_regressor, save_regressor
+from muybridge.regression.model_file import load_regressor, save_regressor
 from regression.made import COMPONENTS, examples
 
 SMALL = replace(

@@ -22,6 +22,7 @@ COMMANDS = {
     "background": ("background:background", "Tell people from what stands still: a mask for every picture."),
     "synth": ("synth:synth", "Render a scene with known truth, for track."),
     "train": ("train:train", "Learn to guess poses from silhouettes, for filters that need no first pose."),
+    "train-repair": ("train_repair:train_repair", "Learn to tell when a part of a person was lost, for people."),
     "evaluate": ("evaluate:evaluate", "Compare a run with the truth: error per joint in mm."),
     "report": ("report:report", "Write a run's report and plots into its folder."),
     "experiment": ("experiment:experiment", "Run a paper's experiments on scenes with known truth."),

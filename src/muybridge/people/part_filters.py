@@ -1,7 +1,7 @@
-"""Head, torso and hip-leg, each followed by its own colour filter, within reach of the body (Zhao 2009, ch. 4 and 5).
+"""Head, torso and hip-leg, each followed by its own colour filter (Zhao 2009, ch. 4 and 5).
 
-Differences from the paper: each part is expected where it was on the body when the parts were cut, so that one that
-loses its colours stays on the body; the paper lets them go and repairs them afterwards (5.3, 5.4).
+Differences from the paper: each part is expected where it was on the body when the parts were cut (`held`), so that one
+that loses its colours stays on the body; the paper lets them go and repairs them afterwards (5.3, 5.4).
 """
 
 from __future__ import annotations
@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from muybridge.filters.particles import FloatArray
 from muybridge.filters.state import Likelihood
@@ -16,8 +17,10 @@ from muybridge.people.blobs import Blob
 from muybridge.people.box import BoxMotion, CountConfig
 from muybridge.people.colour_likelihood import ColourConfig
 from muybridge.people.evidence import Together, middle
+from muybridge.people.failure import FailureDetector, History
 from muybridge.people.filtered import Filtered, Frame
-from muybridge.people.parts import PartConfig, decompose
+from muybridge.people.parts import PARTS, PartConfig, decompose
+from muybridge.people.repair import mended
 
 PLACE_SD = 0.04  # of the body's height: how far a part moves on the body from frame to frame, and with the gait
 SIZE_SD = 0.15  # of its own size
@@ -38,6 +41,33 @@ class OnBody:
         return -0.5 * (np.square(place).sum(axis=1) + np.square(size).sum(axis=1))
 
 
+class Unknown:
+    """Nothing can be seen: every box is as likely as any other, and the dynamics alone move them (5.4)."""
+
+    def log_prob(self, states: FloatArray) -> FloatArray:
+        """(N,) zeros."""
+        return np.zeros(len(states))
+
+
+@dataclass(frozen=True, eq=False)
+class PartRules:
+    """How parts are cut, followed and repaired; the same for everybody.
+
+    held : bool
+        Whether they are expected on the body, or go where their colours are.
+    detector : FailureDetector or None
+        What says that one must be repaired; None: nothing is.
+    """
+
+    motion: BoxMotion
+    counts: CountConfig
+    colour: ColourConfig
+    cut: PartConfig
+    frame_rate: float
+    held: bool = True
+    detector: FailureDetector | None = None
+
+
 @dataclass(eq=False)
 class Parts:
     """The three filters.
@@ -45,50 +75,97 @@ class Parts:
     shares : (3, 4) float64, centre from the body's and size, as shares of the body's sides
     """
 
-    filters: tuple[Filtered, ...]
+    filters: list[Filtered]
     shares: FloatArray
+    rules: PartRules
     rng: np.random.Generator
+    history: History
+    repairs: int = 0
 
     @classmethod
-    def start(
-        cls,
-        rng: np.random.Generator,
-        body: FloatArray,
-        frame: Frame,
-        motion: BoxMotion,
-        colour: ColourConfig,
-        config: PartConfig,
-    ) -> Parts | None:
+    def start(cls, rng: np.random.Generator, body: FloatArray, frame: Frame, rules: PartRules) -> Parts | None:
         """Cut a body (>= 4,) that is clear to see into three; None where that cannot be done.
 
         Their random numbers are their own: the body goes where it would without them.
         """
-        rows, columns = middle(body, 1.0)
-        mask = frame.evidence.mask[rows, columns]
-        boxes = decompose(frame.picture, Blob(columns.start, rows.start, mask), config) if mask.any() else None
+        boxes = cut(body, frame, rules.cut)
         if boxes is None:
             return None
-        sides = np.array([body[2], body[3], body[2], body[3]])
-        shares = (boxes[:, :4] - [body[0], body[1], 0, 0]) / sides
         rng = rng.spawn(1)[0]
-        speed_sd = SPEED_SD * float(body[3])
-        filters = tuple(Filtered.start(rng, box, frame, motion, colour, speed_sd) for box in boxes)
-        return cls(filters, shares, rng)
+        return cls(_filters(rng, boxes, body, frame, rules), shares_of(boxes, body), rules, rng,
+                   History(rules.frame_rate))  # fmt: skip
 
-    def step(self, body: FloatArray, frame: Frame, motion: BoxMotion, counts: CountConfig, trusted: bool) -> FloatArray:
+    @property
+    def states(self) -> FloatArray:
+        """(3, 6) the estimates."""
+        return np.array([part.box for part in self.filters])
+
+    def step(self, body: FloatArray, frame: Frame, trusted: bool) -> FloatArray:
         """One frame: (3, 5) centre, size and score of the parts of a body (>= 4,).
 
         trusted : bool
-            Whether colours are the person's own; if not, parts go with the body, and nothing is learnt.
+            Whether colours are the person's own; if not, parts go with the body or coast, nothing is learnt, and
+            nothing is repaired (5.4).
         """
-        found = np.empty((3, 5))
-        sides = np.array([body[2], body[3], body[2], body[3]])
-        for row, part, share in zip(found, self.filters, self.shares):
-            expected = share * sides + [body[0], body[1], 0, 0]
-            colour = part.target.observe(frame.picture, frame.background)
-            cues: list[Likelihood] = [OnBody(expected, float(body[3])), *([colour] if trusted else [])]
-            part.step(self.rng, Together(tuple(cues)), motion, counts)
-            row[:4], row[4] = part.box[:4], np.exp(colour.log_prob(part.box[None])[0])
-            if trusted:
-                part.target = part.target.updated(colour.histogram(part.box))
+        expected = self.shares * _sides(body) + _centre(body)
+        found = np.array([self._follow(k, expected[k], float(body[3]), frame, trusted) for k in range(len(PARTS))])
+        features = self.history.features(self.states, float(body[3]))
+        if trusted and features is not None and self.rules.detector is not None:
+            failed = self.rules.detector.failed(features)
+            if failed.any():
+                self._repair(failed, body, frame)
+                found[:, :4] = self.states[:, :4]
+                found[failed, 4] = 1.0  # it is what was just learnt
         return found
+
+    def _follow(self, index: int, expected: FloatArray, height: float, frame: Frame, trusted: bool) -> FloatArray:
+        """(5,) of one part: its filter's step, and what it looks like now."""
+        part = self.filters[index]
+        colour = part.target.observe(frame.picture, frame.background)
+        cues: list[Likelihood] = [OnBody(expected, height)] if self.rules.held else []
+        cues += [colour] if trusted else []
+        part.step(self.rng, Together(tuple(cues)) if cues else Unknown(), self.rules.motion, self.rules.counts)
+        score = float(np.exp(colour.log_prob(part.box[None])[0]))
+        if trusted:
+            part.target = part.target.updated(colour.histogram(part.box))
+        return np.append(part.box[:4], score)
+
+    def _repair(self, failed: NDArray[np.bool_], body: FloatArray, frame: Frame) -> None:
+        """5.4: one part from the other two; several from the foreground where the body is."""
+        rules = self.rules
+        if failed.all():
+            boxes = cut(body, frame, rules.cut)
+            if boxes is not None:
+                self.filters, self.shares = _filters(self.rng, boxes, body, frame, rules), shares_of(boxes, body)
+        else:
+            index = int(failed.argmax())
+            self.filters[index] = mended(self.filters, index, body, frame, rules.cut, rules.colour)
+        self.repairs += 1
+        self.history.forget()
+
+
+def cut(body: FloatArray, frame: Frame, config: PartConfig) -> FloatArray | None:
+    """The parts' boxes (3, 6) of the foreground in a body's box (>= 4,); None where it cannot be cut."""
+    rows, columns = middle(body, 1.0)
+    mask = frame.evidence.mask[rows, columns]
+    return decompose(frame.picture, Blob(columns.start, rows.start, mask), config) if mask.any() else None
+
+
+def shares_of(boxes: FloatArray, body: FloatArray) -> FloatArray:
+    """(3, 4) where boxes (3, >= 4) are on a body (>= 4,): from its centre, and their size, as shares of its sides."""
+    return (boxes[:, :4] - _centre(body)) / _sides(body)
+
+
+def _filters(
+    rng: np.random.Generator, boxes: FloatArray, body: FloatArray, frame: Frame, rules: PartRules
+) -> list[Filtered]:
+    speed_sd = SPEED_SD * float(body[3])
+    return [Filtered.start(rng, boxes[k], frame, rules.motion, rules.colour, speed_sd) for k in range(len(PARTS))]
+
+
+def _sides(body: FloatArray) -> FloatArray:
+    return np.array([body[2], body[3], body[2], body[3]])
+
+
+def _centre(body: FloatArray) -> FloatArray:
+    return np.array([body[0], body[1], 0.0, 0.0])

@@ -58,7 +58,7 @@ def decompose(picture: NDArray[np.uint8], blob: Blob, config: PartConfig | None 
         return None
     neck, waist = cuts
     thigh = waist + max(1, (mask.shape[0] - waist) // 2)  # hip-leg uses the upper half
-    parts = [_shrunk(mask, top, bottom, config.shrink) for top, bottom in ((0, neck), (neck, waist), (waist, thigh))]
+    parts = [inner_box(mask, top, bottom, config.shrink) for top, bottom in ((0, neck), (neck, waist), (waist, thigh))]
     if any(part is None for part in parts):
         return None
     boxes = np.zeros((3, 6))
@@ -90,7 +90,7 @@ def best_cuts(picture: NDArray[np.uint8], mask: NDArray[np.bool_], config: PartC
     return None if best is None else best[1:]
 
 
-def _shrunk(mask: NDArray[np.bool_], top: int, bottom: int, shrink: float) -> tuple[float, ...] | None:
+def inner_box(mask: NDArray[np.bool_], top: int, bottom: int, shrink: float) -> tuple[float, ...] | None:
     """(5.1) to (5.4): centre and size of rows top..bottom, the size 2 K_R standard deviations, at least a pixel."""
     y, x = np.nonzero(mask[top:bottom])
     if not y.size:

@@ -28,6 +28,7 @@ from muybridge.io.run_facts import peak_memory_mb, speed, versions
 from muybridge.io.run_folder import write_summary
 from muybridge.io.video import PictureSource
 from muybridge.people.blobs import BlobConfig, Mask
+from muybridge.people.failure import detector_named
 from muybridge.people.masks import MaskConfig, Masks
 from muybridge.people.scene import Scene, describe
 from muybridge.people.tracker import PeopleTracker, TrackerConfig
@@ -51,6 +52,7 @@ class PeopleConfig:
 
     masks: MaskConfig = MaskConfig()
     tracker: TrackerConfig = TrackerConfig()
+    repair: str = "shipped"  # what says that a part was lost: "shipped", "none", or a file that `train-repair` wrote
     rows: int = 720  # pictures with more are worked on reduced to so many
     moments: int = 200  # of the clip that are looked at beforehand
     plate_moments: int = 60  # of those, for the median that is the empty scene
@@ -97,10 +99,11 @@ def run(
         What hides people, in the pictures' own pixels, beside what is found to.
     """
     config, progress = config or PeopleConfig(), progress or _ignore
+    detector = detector_named(config.repair)
     make_folder(out)
     factor = min(1.0, config.rows / pictures.size[1])
     masks, scene = look_over(pictures, config, factor, occluders, progress)
-    tracker = PeopleTracker(scene, config.tracker, frame_rate=pictures.frame_rate, seed=seed)
+    tracker = PeopleTracker(scene, config.tracker, frame_rate=pictures.frame_rate, seed=seed, detector=detector)
     started = time.perf_counter()
     times: list[float] = []
 

@@ -23,10 +23,11 @@ from muybridge.people.box import PRINTED_VARIANCES, BoxMotion, CountConfig, boxe
 from muybridge.people.colour_likelihood import ColourConfig, Picture
 from muybridge.people.detect import Places, find_standing
 from muybridge.people.evidence import Evidence, ForegroundConfig
+from muybridge.people.failure import FailureDetector
 from muybridge.people.filtered import Filtered, Frame
 from muybridge.people.histograms import to_luma_chroma
 from muybridge.people.identity import Identities, IdentityConfig
-from muybridge.people.part_filters import Parts
+from muybridge.people.part_filters import PartRules, Parts
 from muybridge.people.parts import PartConfig
 from muybridge.people.person import TRUST_WHOLE, Person, Sighting, feet, follow, nearness
 from muybridge.people.scene import Scene
@@ -48,6 +49,7 @@ class TrackerConfig:
     foreground: ForegroundConfig = ForegroundConfig()
     identity: IdentityConfig = IdentityConfig()
     parts: PartConfig = PartConfig()
+    held: bool = True  # parts are expected on the body; false: they go where their colours are, as in the paper
     counts: CountConfig = CountConfig()
     blobs: BlobConfig = BlobConfig()  # where the ground's scale is not known
     variances: tuple[float, ...] = PRINTED_VARIANCES  # px^2 a frame, (4.3)
@@ -77,10 +79,18 @@ class PeopleTracker:
     config : TrackerConfig
     frame_rate : float, frames per second
     seed : int
+    detector : FailureDetector, optional
+        What says that a part must be repaired; nothing is where absent.
     """
 
     def __init__(
-        self, scene: Scene, config: TrackerConfig | None = None, *, frame_rate: float = 10.0, seed: int = 0
+        self,
+        scene: Scene,
+        config: TrackerConfig | None = None,
+        *,
+        frame_rate: float = 10.0,
+        seed: int = 0,
+        detector: FailureDetector | None = None,
     ) -> None:
         self.scene, self.config = scene, config or TrackerConfig()
         self.people: list[Person] = []
@@ -88,6 +98,8 @@ class PeopleTracker:
         self._rng = np.random.default_rng(seed)
         self._rate, self._count = frame_rate, 0
         self._motion = BoxMotion.within(scene.size, self.config.variances)
+        self._rules = PartRules(self._motion, self.config.counts, self.config.part_colour, self.config.parts,
+                                frame_rate, self.config.held, detector)  # fmt: skip
         self._background = to_luma_chroma(scene.background)
         smallest = self.config.smallest
         self._places = None if scene.ground is None else Places.on(scene.ground, scene.size, smallest)
@@ -111,6 +123,32 @@ class PeopleTracker:
         """Everybody who was believed in so far, from the first sight to the last."""
         return gathered(person for person in self.gone + self.people if person.confirmed)
 
+    def settle(self, frame: int) -> Tracks:
+        """Tracks up to a frame, for the last time: they are forgotten here, so that a stream may go on for ever.
+
+        Whoever was lost, and has no sighting after that frame, is forgotten altogether.
+        """
+        settled = gathered((person for person in self.gone + self.people if person.confirmed), frame)
+        for person in self.gone + self.people:
+            person.sightings = [sighting for sighting in person.sightings if sighting.frame > frame]
+        self.gone = [person for person in self.gone if person.sightings]
+        self._identities.forget({*self.gone, *self.people})
+        return settled
+
+    def adopt(self, scene: Scene) -> None:
+        """Go on in the same scene, of which more is known by now."""
+        if scene.size != self.scene.size:
+            raise InputError("scene", expected=f"the size {self.scene.size}", got=str(scene.size))
+        self.scene, self._background = scene, to_luma_chroma(scene.background)
+        self._places = None if scene.ground is None else Places.on(scene.ground, scene.size, self.config.smallest)
+
+    def abandon(self) -> None:
+        """Give everybody up: nothing is where it was."""
+        for person in self.people:
+            person.lost = True
+        self.gone += self.people
+        self.people = []
+
     def _frames(self, seconds: float) -> int:
         return max(1, round(seconds * self._rate))
 
@@ -128,7 +166,7 @@ class PeopleTracker:
         parts, box = None, person.body.box
         if person.parts is not None:
             trusted = person.visible >= TRUST_WHOLE and not person.missing
-            parts = person.parts.step(box, frame, self._motion, self.config.counts, trusted)
+            parts = person.parts.step(box, frame, trusted)
         score = min(1.0, person.visible) * person.filled
         person.sightings.append(Sighting(frame.number, box, score, not person.missing, parts))
         if not person.unseen:
@@ -173,8 +211,7 @@ class PeopleTracker:
         self._identities.step(frame.picture, frame.number, people, clear, self.gone)
         for person in people:
             if person in clear and person.parts is None:
-                colour, parts = self.config.part_colour, self.config.parts
-                person.parts = Parts.start(person.rng, person.body.box, frame, self._motion, colour, parts)
+                person.parts = Parts.start(person.rng, person.body.box, frame, self._rules)
 
     def _is_whole(self, person: Person) -> bool:
         full = person.filled > FULL * self.scene.silhouette.mean

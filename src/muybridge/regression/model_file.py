@@ -1,4 +1,4 @@
-"""A regressor as a file: arrays and a JSON header in one compressed npz; nothing in it is ever executed or unpickled.
+"""A regressor as a file: see `archive`.
 
 Examples and outputs are kept as float32, which is what the regressor predicts from; the matrices that predictions need
 are made again when it is loaded, so that 3000 frames take about a megabyte, and a loaded model predicts what the saved
@@ -7,7 +7,7 @@ one did.
 =============================  ======================================================================
 array                          content
 =============================  ======================================================================
-header                         JSON: format, version, body, components, settings, checksum of the rest
+header                         body, components, settings
 centre                         (F,) of the descriptors
 gate_*                         of `LogisticGate`; absent where the variances decide
 cluster<k>_*                   of `ClusterExamples`; hyper (Q, 4): theta_1, theta_2, theta_3, 1 / beta
@@ -16,17 +16,13 @@ cluster<k>_*                   of `ClusterExamples`; hyper (Q, 4): theta_1, thet
 
 from __future__ import annotations
 
-import hashlib
-import json
-import os
-import zipfile
-import zlib
 from dataclasses import asdict, fields
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from muybridge.archive import INCOMPLETE, Arrays, Kind, incomplete
 from muybridge.errors import InputError
 from muybridge.regression.cluster_regression import ClusterExamples, RegressionConfig
 from muybridge.regression.clusters import ClusterConfig
@@ -36,43 +32,23 @@ from muybridge.regression.gate import GateConfig, LogisticGate
 from muybridge.regression.gaussian_process import HyperParameters
 from muybridge.regression.regressor import Config, SilhouetteRegressor, rebuilt
 
-FORMAT = "muybridge-regressor"
-VERSION = 1
-HEADER = "header"
+KIND = Kind("muybridge-regressor", 1, "train")
 _HYPER = tuple(column.name for column in fields(HyperParameters))
 _GATE = ("landmarks", "centre", "scale", "weights")
 _CLUSTER = {"inputs": np.float32, "outputs": np.float32, "middle": np.float64, "sd": np.float64}
-#: What reading a damaged zip or array may raise.
-_DAMAGE = (OSError, EOFError, ValueError, KeyError, TypeError, NotImplementedError, zipfile.BadZipFile, zlib.error)
-
-Arrays = dict[str, np.ndarray]
 
 
 def save_regressor(path: str | Path, regressor: SilhouetteRegressor) -> None:
     """Write the whole file, or leave the one that was there untouched."""
-    target = Path(path)
-    arrays = _arrays_of(regressor)
     header = {
-        "format": FORMAT,
-        "version": VERSION,
         "body": regressor.body,
         "components": asdict(regressor.components),
         "config": asdict(regressor.config),
         "scale": regressor.scale,
         "clusters": len(regressor.clusters),
         "gate_inverse_scale": regressor.gate.inverse_scale if regressor.gate else None,
-        "checksum": checksum(arrays),
     }
-    unfinished = target.with_name(f"{target.stem}.unfinished.npz")
-    try:
-        with open(unfinished, "wb") as file:
-            np.savez_compressed(file, **{HEADER: np.array(json.dumps(header))}, **arrays)  # type: ignore[arg-type]
-        os.replace(unfinished, target)
-    except OSError as error:
-        reason = os.strerror(error.errno) if error.errno else str(error)
-        raise InputError(str(target), expected="room to write", got=reason) from error
-    finally:
-        unfinished.unlink(missing_ok=True)
+    KIND.save(path, header, _arrays_of(regressor))
 
 
 def load_regressor(path: str | Path, components: PoseComponents | None = None) -> SilhouetteRegressor:
@@ -89,15 +65,11 @@ def load_regressor(path: str | Path, components: PoseComponents | None = None) -
         The file is damaged, something else, of a later version, or for a body of other components.
     """
     what = f"regressor {path}"
-    arrays = _read(what, Path(path))
-    header = _header(what, arrays)
-    if header["checksum"] != checksum(arrays):
-        raise InputError(what, expected="the checksum that was written", got="another", remedy="it is damaged")
+    header, arrays = KIND.load(what, path)
     try:
         regressor = _regressor_of(header, arrays)
-    except (KeyError, TypeError, ValueError, IndexError, np.linalg.LinAlgError) as error:
-        got = f"{type(error).__name__}: {error}".splitlines()[0]
-        raise InputError(what, expected="all parts of a regressor", got=got) from error
+    except INCOMPLETE as error:
+        raise incomplete(what, "all parts of a regressor", error) from error
     if components is not None:
         require_components(what, regressor, components)
     return regressor
@@ -115,43 +87,6 @@ def require_components(what: str, regressor: SilhouetteRegressor, components: Po
         got=f"one for {regressor.body or 'another body'!r} with {len(regressor.components)} (differs: {differing})",
         remedy="train one for this body",
     )
-
-
-def checksum(arrays: Arrays) -> str:
-    """SHA-256 over names, types, shapes and values, in the order of the names."""
-    digest = hashlib.sha256()
-    for name in sorted(arrays):
-        array = np.ascontiguousarray(arrays[name])
-        digest.update(f"{name} {array.dtype.str} {array.shape}\n".encode())
-        digest.update(array.tobytes())
-    return digest.hexdigest()
-
-
-def _read(what: str, path: Path) -> Arrays:
-    if not path.is_file():
-        raise InputError(what, expected="a file", got="none")
-    try:
-        with np.load(path, allow_pickle=False) as stored:
-            return {name: stored[name] for name in stored.files}
-    except _DAMAGE as error:
-        got = str(error).splitlines()[0][:80] if str(error) else type(error).__name__
-        raise InputError(what, expected="a file that `train` wrote, whole", got=got) from error
-
-
-def _header(what: str, arrays: Arrays) -> dict[str, Any]:
-    """The header, taken out of the arrays."""
-    try:
-        header = json.loads(str(arrays.pop(HEADER)))
-    except (KeyError, ValueError, RecursionError):
-        header = None
-    if not isinstance(header, dict) or header.get("format") != FORMAT:
-        raise InputError(what, expected=f"the format {FORMAT!r}", got="another kind of npz")
-    if header.get("version") != VERSION:
-        remedy = "it was written by another version of this program: train it anew"
-        raise InputError(f"{what}: version", expected=str(VERSION), got=repr(header.get("version")), remedy=remedy)
-    if "checksum" not in header:
-        raise InputError(what, expected="a checksum", got="none")
-    return header
 
 
 def _arrays_of(regressor: SilhouetteRegressor) -> Arrays:

@@ -1,0 +1,201 @@
+"""How long parts stay right, with and without repair (thesis, 6.3, Fig. 6.15), and boxes that are mistaken for them.
+
+A box is right if at least half of it lies on what it should show. Everybody is started at the truth when first seen
+whole; the whole body is the box around the parts, or, where it is followed by itself, a box of its own.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from typing import Any, ClassVar
+
+import numpy as np
+
+from muybridge.experiments.experiment import Amount, Case, Outcome, Part, Report
+from muybridge.experiments.statistics import over_seeds
+from muybridge.experiments.tables import Cell, Column, Table
+from muybridge.experiments.zhao_2009.hall import HallPictures, HallTrial, halls
+from muybridge.people.box import states_from_boxes
+from muybridge.people.colour_likelihood import pixel_boxes
+from muybridge.people.failure import detector_named
+from muybridge.people.histograms import BinMap, count_histograms, to_luma_chroma
+from muybridge.people.labelled import around, as_boxes, coverage, follow_labelled
+from muybridge.people.parts import PARTS
+from muybridge.people.repair_training import RepairTraining
+
+CONDITIONS = ("no repair", "repair", "held", "held, repair")
+"""The thesis' tracker without and with repair; ours, whose parts are expected on the body, without and with it."""
+FRAME, NEAR = 105, 5
+"""The thesis' frame, and how many frames to either side are averaged."""
+TARGETS = (*PARTS, "whole")
+PRINTED = {"no repair": (0.67, 0.68, 0.64, 0.75), "repair": (0.95, 0.83, 0.91, 0.95)}
+"""Fig. 6.15 at frame 105: head, torso, hip-leg, whole body."""
+MOST = 150  # frames
+RIGHT = 0.5
+
+
+@dataclass(frozen=True)
+class RateResult:
+    """right : for each target, for each person, a text of 0 and 1, one a frame."""
+
+    right: tuple[tuple[str, ...], ...]
+
+    def rate(self, target: int, first: int, last: int) -> float:
+        """Share right in frames first..last, of the people who are there in any of them; NaN: nobody."""
+        seen = [text[first : last + 1] for text in self.right[target] if len(text) > first]
+        return float(np.mean([np.mean([mark == "1" for mark in text]) for text in seen])) if seen else float("nan")
+
+
+@dataclass(frozen=True)
+class RateTrial(HallTrial):
+    """One condition."""
+
+    RESULT: ClassVar[type[Any]] = RateResult
+    condition: str = "repair"
+
+    def measure(self, pictures: HallPictures) -> RateResult:
+        """Follow everybody by their parts."""
+        rules = RepairTraining(frame_rate=self.clip.rate).rules(self.clip.size)
+        rules = replace(rules, held="held" in self.condition)
+        if self.condition.endswith("repair") and self.condition != "no repair":
+            rules = replace(rules, detector=detector_named("shipped"))
+        rng = np.random.default_rng([self.clip.seed, 6])
+        tracks = follow_labelled(rng, pictures.shots, pictures.empty, rules, most=MOST)
+        right: list[list[str]] = [[] for _ in TARGETS]
+        for track in tracks:
+            boxes = as_boxes(track.states)
+            parts = coverage(boxes, track.true_parts) >= RIGHT
+            whole = coverage(around(boxes), track.true_bodies) >= RIGHT
+            for target, flags in enumerate([*parts.T, whole]):
+                right[target].append("".join("01"[int(flag)] for flag in flags))
+        return RateResult(tuple(tuple(texts) for texts in right))
+
+
+def cases_of_rates(scale: Amount) -> Iterator[Case]:
+    """Four conditions on one clip a seed."""
+    for clip in halls(scale.seeds):
+        for condition in CONDITIONS:
+            yield Case(condition, RateTrial(clip, condition))
+
+
+def report_of_rates(outcome: Outcome) -> Report:
+    """At the thesis' frame, and against the frame."""
+    from muybridge.plotting.people_curves import plot_rates
+    from muybridge.plotting.style import new_figure
+
+    rows: list[tuple[Cell, ...]] = []
+    figure, axes = new_figure(2, 2, width=9.0, height=6.0)
+    curves: dict[str, list[np.ndarray]] = {}
+    for condition, group in outcome.groups().items():
+        cells = [over_seeds({row.key: row.result.rate(k, FRAME - NEAR, FRAME + NEAR) for row in group})
+                 for k in range(len(TARGETS))]  # fmt: skip
+        people = sum(len(text) > FRAME - NEAR for row in group for text in row.result.right[0])
+        rows.append((condition, *cells, people))
+        curves[condition] = [_curve(group, k) for k in range(len(TARGETS))]
+    rows += [(f"thesis, {name}", *values, 72) for name, values in PRINTED.items()]
+    for k, (target, ax) in enumerate(zip(TARGETS, axes.ravel(), strict=True)):
+        plot_rates(ax, {condition: curve[k] for condition, curve in curves.items()}, target.replace("_", "-"))
+    columns = (Column("tracker"), *(Column(name, 0, percent=True) for name in TARGETS), Column("people", 0))
+    notes = (f"Share right in frames {FRAME - NEAR} to {FRAME + NEAR} after the start, of the people still there; "
+             "intervals over seeds.",)  # fmt: skip
+    table = Table("tracking-rate", "Parts still right at frame 105 (Fig. 6.15)", columns, tuple(rows), notes)
+    return Report((table,), {"tracking-rate": figure})
+
+
+def _curve(group: list[Any], target: int) -> np.ndarray:
+    """(MOST,) share right at each frame; NaN where nobody is left."""
+    texts = [text for row in group for text in row.result.right[target]]
+    marks = np.full((len(texts), MOST), np.nan)
+    for mark, text in zip(marks, texts):
+        mark[: len(text)] = [character == "1" for character in text]
+    counts = np.sum(~np.isnan(marks), axis=0)
+    return np.where(counts > 0, np.nansum(marks, axis=0) / np.maximum(counts, 1), np.nan)
+
+
+@dataclass(frozen=True)
+class AlarmResult:
+    """For each part: random boxes that were tried, and those that were mistaken for the part."""
+
+    tried: tuple[int, ...]
+    mistaken: tuple[int, ...]
+
+
+@dataclass(frozen=True)
+class AlarmTrial(HallTrial):
+    """Random boxes against parts, with bins fitted to the part or even ones (thesis, 6.2.3)."""
+
+    RESULT: ClassVar[type[Any]] = AlarmResult
+    mapping: bool = True
+    boxes: int = 1000  # a part and picture
+    pictures: int = 8
+
+    def measure(self, pictures: HallPictures) -> AlarmResult:
+        """The first person seen whole in pictures spread over the clip."""
+        rng = np.random.default_rng([self.clip.seed, 623])
+        tried, mistaken = np.zeros(len(PARTS), int), np.zeros(len(PARTS), int)
+        whole = [(shot, k) for shot in pictures.shots for k in range(len(shot.numbers)) if shot.visible[k] > 0.95]
+        for index in np.linspace(0, len(whole) - 1, min(self.pictures, len(whole))).astype(int):
+            shot, k = whole[index]
+            picture = to_luma_chroma(shot.image)
+            for part, box in enumerate(shot.parts[k]):
+                far, near = _random_boxes(rng, box, self.clip.size, self.boxes)
+                alike = _likeness(picture, box, self.mapping)
+                threshold = float(alike(near).mean())
+                tried[part] += len(far)
+                mistaken[part] += int(np.count_nonzero(alike(far) >= threshold))
+        return AlarmResult(tuple(map(int, tried)), tuple(map(int, mistaken)))
+
+
+def _random_boxes(
+    rng: np.random.Generator, box: np.ndarray, size: tuple[int, int], count: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """Boxes (N, 4) of the target's size that do not overlap with it, and (M, 4) that do with more than half."""
+    low, high = np.zeros(2), np.maximum(1.0, np.array(size) - box[2:])
+    places = rng.uniform(low, high, (4 * count, 2))
+    apart = (np.abs(places - box[:2]) >= box[2:]).any(axis=1)
+    far = places[apart][:count]
+    shifts = rng.uniform(-0.5, 0.5, (200, 2)) * box[2:]
+    near = box[:2] + shifts[np.prod(1 - np.abs(shifts) / box[2:], axis=1) > 0.5]
+    return tuple(np.column_stack([corners, np.repeat(box[None, 2:], len(corners), axis=0)]) for corners in (far, near))  # type: ignore[return-value]
+
+
+def _likeness(picture: np.ndarray, box: np.ndarray, mapping: bool) -> Any:
+    """Function of boxes (N, 4): (N,) Bhattacharyya coefficients with what is in `box`, mean of the three channels."""
+    target = pixel_boxes(states_from_boxes(box))[0]
+    left, top, right, bottom = np.maximum(0, target[0])
+    bins = BinMap.equalising(picture[top:bottom, left:right]) if mapping else BinMap.even()
+    reference = count_histograms(picture, bins, target)[0]
+
+    def alike(boxes: np.ndarray) -> np.ndarray:
+        found = count_histograms(picture, bins, pixel_boxes(states_from_boxes(boxes))[0])
+        return np.sqrt(found * reference).sum(axis=1) / 3
+
+    return alike
+
+
+def cases_of_alarms(scale: Amount) -> Iterator[Case]:
+    """With and without the mapping."""
+    for clip in halls(scale.seeds):
+        for mapping in (True, False):
+            yield Case("fitted bins" if mapping else "even bins", AlarmTrial(clip, mapping))
+
+
+def report_of_alarms(outcome: Outcome) -> Report:
+    """Shares of random boxes."""
+    printed = {"fitted bins": (0.0013, 0.0016, 0.0009), "even bins": (0.0195, 0.0147, 0.0145)}
+    rows: list[tuple[Cell, ...]] = []
+    for label, group in outcome.groups().items():
+        shares = [over_seeds({row.key: row.result.mistaken[k] / max(1, row.result.tried[k]) for row in group})
+                  for k in range(len(PARTS))]  # fmt: skip
+        rows.append((label, *shares, sum(sum(row.result.tried) for row in group)))
+        rows.append((f"thesis, {label}", *printed[label], 50000))
+    columns = (Column("histogram"), *(Column(name, 2, percent=True) for name in PARTS), Column("boxes", 0))
+    notes = ("Mistaken: as like the part, by Bhattacharyya's coefficient, as boxes are on average that overlap with it by "
+             "more than half.",)  # fmt: skip
+    return Report((Table("false-alarms", "Random boxes mistaken for a part (6.2.3)", columns, tuple(rows), notes),))
+
+
+RATES = Part("rates", "Parts still right, with and without repair (Fig. 6.15)", report_of_rates, cases_of_rates)
+ALARMS = Part("alarms", "Boxes mistaken for parts, with and without fitted bins (6.2.3)", report_of_alarms,
+              cases_of_alarms)  # fmt: skip

@@ -1,0 +1,54 @@
+"""One person followed by parts alone, as the thesis does: colours, failure detection and repair (Zhao 2009, ch. 4, 5).
+
+`tracker` follows bodies by the foreground and parts on them. Here the body is where the parts say it is: this is what
+the thesis' experiments measure, and what failure detectors are trained on.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from muybridge.filters.particles import FloatArray
+from muybridge.people.filtered import Frame
+from muybridge.people.part_filters import PartRules, Parts
+from muybridge.people.person import TRUST_WHOLE
+
+
+@dataclass(eq=False)
+class PartsAlone:
+    """A person without a body of their own.
+
+    body : (6,) centre, size and velocity per frame, as the parts have it
+    """
+
+    parts: Parts
+    body: FloatArray
+
+    @classmethod
+    def start(cls, rng: np.random.Generator, body: FloatArray, frame: Frame, rules: PartRules) -> PartsAlone | None:
+        """Cut a body (>= 4,) that is clear to see; None where that cannot be done."""
+        parts = Parts.start(rng, body, frame, rules)
+        return None if parts is None else cls(parts, np.concatenate([body[:4], np.zeros(2)]))
+
+    def step(self, frame: Frame) -> FloatArray:
+        """One frame: (3, 5) of the parts, see `Parts.step`."""
+        expected = self.body.copy()
+        expected[:2] += expected[4:]
+        trusted = frame.evidence.seen(expected)[0] >= TRUST_WHOLE
+        found = self.parts.step(expected, frame, trusted)
+        self.body = body_of(self.parts, expected)
+        return found
+
+
+def body_of(parts: Parts, expected: FloatArray) -> FloatArray:
+    """(6,) the body that parts lie on: the median of what each says, of the shape that is expected (>= 4,).
+
+    The median, so that one part that failed does not move it.
+    """
+    states, shares = parts.states, parts.shares
+    height = float(np.median(states[:, 3] / shares[:, 3]))
+    sides = np.array([expected[2] / expected[3] * height, height])
+    centre = np.median(states[:, :2] - shares[:, :2] * sides, axis=0)
+    return np.concatenate([centre, sides, np.median(states[:, 4:], axis=0)])

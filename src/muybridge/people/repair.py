@@ -1,0 +1,74 @@
+"""A part that failed, placed anew from the other two (Zhao 2009, 5.4).
+
+==========================  =========================================
+symbol                      name
+==========================  =========================================
+{X_T, Y_T, W_T, H_T}        `torso_between`, (5.8)
+R_h, R_l                    `section`: rows above and below the torso
+N_1 + N_2                   particles of the part that was mended
+==========================  =========================================
+
+Differences from the paper: "above" and "below" reach as far from the torso's middle as the sections are high that
+bodies are cut into; where there is no foreground, the part is put in the middle of its section, at its size.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from muybridge.filters.particles import FloatArray
+from muybridge.filters.state import State
+from muybridge.people.box import SPEED_X
+from muybridge.people.colour_likelihood import ColourConfig, ColourTarget
+from muybridge.people.evidence import middle
+from muybridge.people.filtered import Filtered, Frame
+from muybridge.people.parts import PARTS, PartConfig, inner_box
+
+HEAD, TORSO, HIP_LEG = range(len(PARTS))
+FEWEST = 0.15  # share of a section that must be foreground to say where the part is
+
+
+def mended(
+    filters: Sequence[Filtered], index: int, body: FloatArray, frame: Frame, cut: PartConfig, colour: ColourConfig
+) -> Filtered:
+    """The part `index` anew: its place from the others, their velocities, and what it looks like there.
+
+    body : (>= 4,), whose width and height say how far a section reaches
+    """
+    others = [part for k, part in enumerate(filters) if k != index]
+    if index == TORSO:
+        box = torso_between(filters[HEAD].box, filters[HIP_LEG].box)
+    else:
+        box = in_section(section(index, filters[TORSO].box, body, cut), filters[index].box, frame, cut)
+    particles = np.concatenate([part.state.particles for part in others])
+    particles[:, :SPEED_X] = box
+    speed = np.mean([part.box[SPEED_X:] for part in others], axis=0)
+    estimate = np.concatenate([box, speed])
+    state = State(particles, np.full(len(particles), -np.log(len(particles))), estimate, filters[index].state.velocity)
+    return Filtered(state, ColourTarget.learn(frame.picture, estimate, colour))
+
+
+def torso_between(head: FloatArray, hip_leg: FloatArray) -> FloatArray:
+    """(4,) of (5.8): the mean of both boxes (>= 4,)."""
+    between: FloatArray = (head[:SPEED_X] + hip_leg[:SPEED_X]) / 2
+    return between
+
+
+def section(index: int, torso: FloatArray, body: FloatArray, cut: PartConfig) -> FloatArray:
+    """(4,) centre and size of the head's section, above the torso's, or of the upper half of the legs', below."""
+    own = cut.ratios[index] / (2 if index == HIP_LEG else 1)
+    reach = (cut.ratios[TORSO] + own) / 2 * body[3]
+    centre = torso[1] - reach if index == HEAD else torso[1] + reach
+    return np.array([torso[0], centre, body[2], own * body[3]])
+
+
+def in_section(place: FloatArray, before: FloatArray, frame: Frame, cut: PartConfig) -> FloatArray:
+    """(4,) the inner box (5.1) to (5.4) of the foreground in a section (4,)."""
+    rows, columns = middle(place, 1.0)
+    mask = frame.evidence.mask[rows, columns] & (frame.evidence.weights[rows, columns] > 0)
+    box = inner_box(mask, 0, len(mask), cut.shrink) if mask.any() and mask.mean() > FEWEST else None
+    if box is None:
+        return np.concatenate([place[:2], before[2:SPEED_X]])
+    return np.array(box) + (columns.start, rows.start, 0, 0)
