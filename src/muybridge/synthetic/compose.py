@@ -15,12 +15,14 @@ def lay_over(background: np.ndarray, layers: Sequence[Layer]) -> np.ndarray:
 
     Returns
     -------
-    (H, W) float32 in 0-1
-        How much of each pixel shows the first layer.
+    (L, H, W) float32 in 0-1
+        How much of each pixel shows each layer.
     """
-    seen = np.zeros(background.shape[:2], dtype=np.float32)
+    seen = np.zeros((len(layers), *background.shape[:2]), dtype=np.float32)
+    if not layers:
+        return seen
     if len(layers) == 1:
-        _lay_one(background, layers[0], seen)
+        _lay_one(background, layers[0], seen[0])
         return seen
     left, top, right, bottom = _union([layer.window for layer in layers])
     shape = (len(layers), bottom - top, right - left)
@@ -31,7 +33,7 @@ def lay_over(background: np.ndarray, layers: Sequence[Layer]) -> np.ndarray:
         place = index, slice(y0 - top, y1 - top), slice(x0 - left, x1 - left)
         coverage[place], colours[place], depth[place] = layer.coverage, layer.colours, layer.depth
     composite(background[top:bottom, left:right], coverage, colours, depth, visible)
-    seen[top:bottom, left:right] = visible[0]
+    seen[:, top:bottom, left:right] = visible
     return seen
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
@@ -71,6 +71,7 @@ class Scene:
     occluders : things that stand about, in the empty frames too
     light : lamps, and when they go on and off
     sensor : exposure, shutter, compression
+    follow : "person", the first one, by any number of cameras; or "people", everybody, by one
     """
 
     rig: Rig
@@ -84,11 +85,14 @@ class Scene:
     occluders: tuple[Occluder, ...] = ()
     light: Light = Light()
     sensor: Sensor = Sensor()
+    follow: Literal["person", "people"] = "person"
 
     def __post_init__(self) -> None:
         for name, least, most in (("noise", 0, 100), ("drift", 0, 0.9), ("shadow", 0, 1)):
             if not least <= getattr(self, name) <= most:
                 raise InputError(f"scene: {name}", expected=f"{least} to {most}", got=str(getattr(self, name)))
+        if self.follow == "people" and len(self.rig) != 1:
+            raise InputError("scene: follow people", expected="one camera", got=str(len(self.rig)))
         for other in self.others:
             if len(other.motion.times) != self.frame_count or other.motion.rate != self.rate:
                 expected = f"{self.frame_count} frames at {self.rate:g} Hz, as the person's"
@@ -99,6 +103,17 @@ class Scene:
                 if camera.position[2] < thing.size[2] and not thing.distance(camera.position[:2]) > 0:
                     raise InputError(f"camera {camera.name}", expected="a place outside every occluder",
                                      got="one inside", remedy="move one of the two")  # fmt: skip
+
+    @property
+    def changes(self) -> tuple[float, ...]:
+        """Seconds at which a lamp is switched, or a thing comes or goes, in order."""
+        moments = {switch.time for switch in self.light.switches}
+        moments |= {time for thing in self.occluders for time in (thing.since, thing.until) if time is not None}
+        return tuple(sorted(moments))
+
+    def epoch(self, time: float) -> int:
+        """How many `changes` have been by this time, seconds."""
+        return sum(change <= time for change in self.changes)
 
     @property
     def people(self) -> tuple[Person, ...]:

@@ -12,6 +12,7 @@ from muybridge.synthetic.clip import KINDS, Motion, Track
 from muybridge.synthetic.limbs import leg_length
 from muybridge.synthetic.planting import planted
 from muybridge.synthetic.recorded import Recorded, pose
+from muybridge.synthetic.route import route
 from muybridge.synthetic.skinning import Figure
 from muybridge.synthetic.stepping import Steps, heading_at, step
 
@@ -44,6 +45,8 @@ def perform(figure: Figure, motion: Motion | Recorded) -> Track:
 def _made(figure: Figure, motion: Motion) -> tuple[np.ndarray, np.ndarray]:
     """(T, B, 3, 3) and (T, B, 3) metres, world: a motion that needs no recording."""
     rng = np.random.default_rng([motion.seed, KINDS.index(motion.kind)])
+    if motion.kind == "route":
+        return route(rng, figure, motion)
     return (_by_steps if motion.kind in FROM_STEPS else _by_angles)(rng, figure, motion)
 
 

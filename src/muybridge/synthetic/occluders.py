@@ -28,6 +28,7 @@ class Occluder:
     size : (width, depth, height), metres
     turn : radians, counter-clockwise
     pattern, colour, second, tile : its surface, as a `Garment`'s
+    since, until : seconds, from and until when it is there; None: always, in the empty frames too
     """
 
     kind: str = "box"
@@ -38,6 +39,8 @@ class Occluder:
     colour: Colour = (88, 112, 138)
     second: Colour = (60, 80, 100)
     tile: float = 0.5
+    since: float | None = None
+    until: float | None = None
 
     def __post_init__(self) -> None:
         for name, value, known in (("kind", self.kind, KINDS), ("pattern", self.pattern, PATTERNS)):
@@ -47,6 +50,10 @@ class Occluder:
             raise InputError("occluder: size", expected="three positive lengths in metres", got=str(list(self.size)))
         if not np.isfinite((*self.place, self.turn)).all():
             raise InputError("occluder: place", expected="finite numbers", got=f"{self.place}, turn {self.turn}")
+
+    def stands(self, time: float) -> bool:
+        """Whether it is there at this time, seconds; before the clip begins time is negative."""
+        return (self.since is None or self.since <= time) and (self.until is None or time < self.until)
 
     def distance(self, points: np.ndarray) -> np.ndarray:
         """(...,) metres, along the floor, from points (..., 2) to its outline; 0 inside."""
@@ -89,14 +96,20 @@ def cloth_of(rng: np.random.Generator, occluders: Sequence[Occluder]) -> Cloth:
     return Cloth(np.ascontiguousarray(tiles), np.array([thing.tile for thing in occluders], dtype=np.float64))
 
 
-def mesh_of(occluders: Sequence[Occluder], cell: float = CELL) -> Mesh:
-    """All of them as one mesh of squares up to `cell`, metres; a face's part and label is its thing's index."""
+def mesh_of(occluders: Sequence[Occluder], cell: float = CELL, time: float = -np.inf) -> Mesh | None:
+    """Those that are there at `time`, seconds, as one mesh of squares up to `cell`, metres; None where none is.
+
+    A face's part and label is its thing's index.
+    """
     pieces = [
         (*_placed(thing, *_side(middle, size, normal, cell), normal), index)
         for index, thing in enumerate(occluders)
+        if thing.stands(time)
         for middle, size in thing.boxes()
         for normal in NORMALS
     ]
+    if not pieces:
+        return None
     firsts = np.cumsum([0, *(len(piece[0]) for piece in pieces[:-1])])
     labels = np.concatenate([np.full(len(piece[3]), piece[4], dtype=np.int32) for piece in pieces])
     return Mesh(

@@ -143,11 +143,18 @@ def coverage_of(points: np.ndarray, faces: np.ndarray, width: int, height: int) 
     return buffers[1] >= 0
 
 
+def extent(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The least and the largest of each column of points (N, D), of which there is one at least."""
+    columns = points.T  # a column at a time: numpy reduces long narrow arrays slowly
+    return np.array([column.min() for column in columns]), np.array([column.max() for column in columns])
+
+
 def _window(pixels: np.ndarray, size: tuple[int, int]) -> tuple[int, int, int, int]:
     """The part of the picture that can hold the points."""
     seen = pixels[np.isfinite(pixels[:, 0])]
     if not len(seen):
         return 0, 0, 0, 0
-    low = np.clip(np.floor(seen.min(axis=0)), 0, size).astype(int)
-    high = np.clip(np.ceil(seen.max(axis=0)) + 1, 0, size).astype(int)
+    low, high = extent(seen)
+    low = np.clip(np.floor(low), 0, size).astype(int)
+    high = np.clip(np.ceil(high) + 1, 0, size).astype(int)
     return int(low[0]), int(low[1]), int(max(high[0], low[0])), int(max(high[1], low[1]))

@@ -24,6 +24,7 @@ from muybridge.synthetic.rasterise import Layer, Mesh, draw
 from muybridge.synthetic.rigs import ring
 from muybridge.synthetic.room import Room
 from muybridge.synthetic.sensor import exposed
+from muybridge.synthetic.shadow import FloorShade
 from muybridge.synthetic.skinning import Figure, load_figure
 from muybridge.synthetic.stage import Actor, Stage, actors, stage, things
 from muybridge.synthetic.visibility import segment_of_bone, visible_shares
@@ -103,19 +104,46 @@ def shoot(scene: Scene, frame: int, *, visibility: bool = False) -> tuple[Shot, 
     if not 0 <= frame < scene.frame_count:
         raise InputError("frame", expected=f"0 to {scene.frame_count - 1}", got=str(frame))
     made = stage(scene)
-    state = scene.light.state(frame / scene.rate)
-    lamp = scene.light.lamps[state]
     now = [actor.mesh(frame) for actor in made.actors]
-    shade = made.shade(now, lamp, scene.shadow)
-    moments = _moments(scene, made, frame, now)
+    shade = made.decors[scene.epoch(frame / scene.rate)].shade(now, _lamp(scene, frame), scene.shadow)
     shots = []
     for index, camera in enumerate(scene.rig):
-        decor = made.decors[state]
-        backdrop = shade.applied(decor.rooms[index], made.floors[index])
-        colours, seen, layers = _filmed(camera, made, moments, backdrop, decor.things[index], lamp)
-        visible = _visible(camera, made, now, layers, decor.things[index]) if visibility else np.zeros(0)
-        shots.append(Shot(_developed(scene, colours, index, frame, frame / scene.rate), seen >= 0.5, visible))
+        image, shares, layers = film(scene, made, index, frame, now, shade)
+        things = made.decors[scene.epoch(frame / scene.rate)].things[index]
+        visible = _visible(camera, made, now, layers, things) if visibility else np.zeros(0)
+        shots.append(Shot(image, shares[0] >= 0.5, visible))
     return tuple(shots)
+
+
+def film(
+    scene: Scene, made: Stage, index: int, frame: int, now: list[Mesh], shade: FloorShade
+) -> tuple[np.ndarray, np.ndarray, list[Layer]]:
+    """One frame of one camera.
+
+    Parameters
+    ----------
+    made : the scene's stage, with the actors that are to be drawn
+    index : of the camera
+    now : the actors in the middle of the exposure; shade : their shadow
+
+    Returns
+    -------
+    image : (H, W, 3) uint8 BGR
+    shares : (L, H, W) float32 in 0-1: how much of each pixel shows each actor, and then each layer of things
+    layers : the actors, drawn; none for an open shutter
+    """
+    time = frame / scene.rate
+    decor = made.decors[scene.epoch(time)]
+    backdrop = shade.applied(decor.rooms[index], made.floors[index])
+    moments = _moments(scene, made, frame, now)
+    colours, shares, layers = _filmed(
+        scene.rig[index], made, moments, backdrop, decor.things[index], _lamp(scene, frame)
+    )
+    return _developed(scene, colours, index, frame, time), shares, layers
+
+
+def _lamp(scene: Scene, frame: int) -> Lamp:
+    return scene.light.lamps[scene.light.state(frame / scene.rate)]
 
 
 def silhouettes(scene: Scene, frame: int) -> tuple[np.ndarray, ...]:
@@ -123,14 +151,13 @@ def silhouettes(scene: Scene, frame: int) -> tuple[np.ndarray, ...]:
 
     The masks of `render` for a shutter that is not open, without the pictures and in a fraction of the time.
     """
-    state = scene.light.state(frame / scene.rate)
-    people, standing = actors(scene), things(scene, state)
+    people, standing = actors(scene), things(scene, scene.epoch(frame / scene.rate))
     now = [actor.mesh(frame) for actor in people]
     masks = []
     for index, camera in enumerate(scene.rig):
-        layers = [*_drawn(camera, people, now, scene.light.lamps[state]), *standing[index]]
+        layers = [*_drawn(camera, people, now, _lamp(scene, frame)), *standing[index]]
         width, height = camera.size
-        masks.append(lay_over(np.zeros((height, width, 3), dtype=np.float32), layers) >= 0.5)
+        masks.append(lay_over(np.zeros((height, width, 3), dtype=np.float32), layers)[0] >= 0.5)
     return tuple(masks)
 
 
@@ -159,11 +186,12 @@ def _filmed(
     things: tuple[Layer, ...],
     lamp: Lamp,
 ) -> tuple[np.ndarray, np.ndarray, list[Layer]]:
-    """Light (H, W, 3) and how much of each pixel is the person (H, W), over the open shutter; one moment's layers."""
+    """Light (H, W, 3) and how much of each pixel each layer is (L, H, W), over the open shutter; one moment's layers."""
     if len(moments) == 1:
         layers = _drawn(camera, made.actors, moments[0], lamp)
         return backdrop, lay_over(backdrop, [*layers, *things]), layers
-    light, seen = np.zeros_like(backdrop), np.zeros(backdrop.shape[:2], dtype=np.float32)
+    light = np.zeros_like(backdrop)
+    seen = np.zeros((len(made.actors) + len(things), *backdrop.shape[:2]), dtype=np.float32)
     for number, meshes in enumerate(moments):
         shifted = camera.shifted(*JITTER[number % len(JITTER)])
         layers = _drawn(shifted, made.actors, meshes, lamp, samples=1)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from muybridge.synthetic.rasterise import coverage_of
+from muybridge.synthetic.rasterise import coverage_of, extent
 
 CELL = 0.015  # metres; about a pixel on the floor
 MARGIN = 0.4  # metres of floor kept around the shadow
@@ -23,16 +23,18 @@ class FloorShade:
     ----------
     origin : (2,) metres, world: the middle of cell [0, 0]
     light : (rows, columns) float32 in 0-1; rows go along y, columns along x
+    cell : metres, the side of a cell
     """
 
     origin: np.ndarray
     light: np.ndarray
+    cell: float = CELL
 
     def applied(self, plate: np.ndarray, floor: np.ndarray) -> np.ndarray:
         """A copy of a picture (H, W, 3) float32, darkened where its floor (H, W, 2), metres, lies in shadow."""
         import cv2
 
-        cells = (floor - self.origin.astype(np.float32)) / np.float32(CELL)
+        cells = (floor - self.origin.astype(np.float32)) / np.float32(self.cell)
         rows, columns = self.light.shape
         # NaN compares false: what is no floor stays as it is.
         near = (cells[..., 0] > 0) & (cells[..., 0] < columns - 1) & (cells[..., 1] > 0) & (cells[..., 1] < rows - 1)
@@ -50,7 +52,9 @@ class FloorShade:
         return shaded
 
 
-def floor_shade(vertices: np.ndarray, faces: np.ndarray, light: np.ndarray, strength: float) -> FloorShade:
+def floor_shade(
+    vertices: np.ndarray, faces: np.ndarray, light: np.ndarray, strength: float, cell: float = CELL
+) -> FloorShade:
     """The shadow of a mesh on z = 0.
 
     Parameters
@@ -61,12 +65,12 @@ def floor_shade(vertices: np.ndarray, faces: np.ndarray, light: np.ndarray, stre
     import cv2
 
     cast = vertices[:, :2] - vertices[:, 2:] * (np.asarray(light[:2]) / light[2])
-    low = np.minimum(cast, vertices[:, :2]).min(axis=0) - MARGIN
-    high = np.maximum(cast, vertices[:, :2]).max(axis=0) + MARGIN
-    columns, rows = np.ceil((high - low) / CELL).astype(int) + 1
-    dark = coverage_of((cast - low) / CELL, faces, columns, rows).astype(np.float32)
+    ends = (*extent(cast), *extent(vertices[:, :2]))
+    low, high = np.min(ends, axis=0) - MARGIN, np.max(ends, axis=0) + MARGIN
+    columns, rows = np.ceil((high - low) / cell).astype(int) + 1
+    dark = coverage_of((cast - low) / cell, faces, columns, rows).astype(np.float32)
     touching = faces[(vertices[faces, 2] < CONTACT_HEIGHT).all(axis=1)]
-    under = coverage_of((vertices[:, :2] - low) / CELL, touching, columns, rows).astype(np.float32)
-    soft = cv2.GaussianBlur(dark, (0, 0), PENUMBRA / CELL)
-    near = cv2.GaussianBlur(under, (0, 0), CONTACT / CELL)
-    return FloorShade(low, (1.0 - strength * soft) * (1.0 - CONTACT_SHADE * strength * near))
+    under = coverage_of((vertices[:, :2] - low) / cell, touching, columns, rows).astype(np.float32)
+    soft = cv2.GaussianBlur(dark, (0, 0), PENUMBRA / cell)
+    near = cv2.GaussianBlur(under, (0, 0), CONTACT / cell)
+    return FloorShade(low, (1.0 - strength * soft) * (1.0 - CONTACT_SHADE * strength * near), cell)
