@@ -10,7 +10,7 @@ import pytest
 from made_people import Walker, shots_of
 from muybridge.errors import InputError
 from muybridge.people.labelled import around, as_boxes, coverage, follow_labelled
-from muybridge.people.repair_training import Examples, RepairTraining, examples_of, learn
+from muybridge.people.repair_training import Examples, RepairTraining, examples_of, learn, thesis_rules
 from people.made import EMPTY
 
 CONFIG = RepairTraining(frame_rate=10.0)
@@ -36,13 +36,13 @@ def test_coverage_by_hand() -> None:
 def test_tracks_lie_beside_their_truth() -> None:
     """The second is seen whole from its eighth frame on: before, part of it is outside the picture."""
     tracks = follow_labelled(np.random.default_rng(0), shots_of(WALKERS, 50, EMPTY), EMPTY,
-                             CONFIG.rules((320, 240)), most=20)  # fmt: skip
+                             thesis_rules((320, 240), 10.0), most=20)  # fmt: skip
     assert [(track.person, len(track.states)) for track in tracks] == [(1, 20), (2, 20)]
     for track in tracks:
         assert (coverage(as_boxes(track.states[0]), track.true_parts[0]) > 0.6).all()  # started at the truth
         assert track.visible.shape == (20, 3)
     again = follow_labelled(np.random.default_rng(0), shots_of(WALKERS, 50, EMPTY), EMPTY,
-                            CONFIG.rules((320, 240)), most=20, again=True)  # fmt: skip
+                            thesis_rules((320, 240), 10.0), most=20, again=True)  # fmt: skip
     assert len(again) > len(tracks)
     found = examples_of(again, CONFIG)
     assert found.features.shape[1] == 36 and found.covered.shape == (len(found.features), 3)
@@ -68,7 +68,7 @@ def test_what_is_refused() -> None:
     good = replace(examples(np.random.default_rng(0)), covered=np.ones((300, 3)))
     with pytest.raises(InputError, match="longer or harder clips"):
         learn(good, good, CONFIG)
-    for wrong in ({"held_out": 5}, {"failed": 0.7}, {"spread": 0.0}, {"false_alarms": 1.0}):
+    for wrong in ({"held_out": 5}, {"failed": 0.7}, {"spreads": (0.0,)}, {"false_alarms": 1.0}):
         with pytest.raises(InputError, match="training"):
             replace(CONFIG, **wrong)
     with pytest.raises(InputError, match="did you mean scenes"):

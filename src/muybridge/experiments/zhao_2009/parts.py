@@ -22,7 +22,7 @@ from muybridge.people.failure import detector_named
 from muybridge.people.histograms import BinMap, count_histograms, to_luma_chroma
 from muybridge.people.labelled import around, as_boxes, coverage, follow_labelled
 from muybridge.people.parts import PARTS
-from muybridge.people.repair_training import RepairTraining
+from muybridge.people.repair_training import thesis_rules
 
 CONDITIONS = ("no repair", "repair", "held", "held, repair")
 """The thesis' tracker without and with repair; ours, whose parts are expected on the body, without and with it."""
@@ -56,8 +56,7 @@ class RateTrial(HallTrial):
 
     def measure(self, pictures: HallPictures) -> RateResult:
         """Follow everybody by their parts."""
-        rules = RepairTraining(frame_rate=self.clip.rate).rules(self.clip.size)
-        rules = replace(rules, held="held" in self.condition)
+        rules = replace(thesis_rules(self.clip.size, self.clip.rate), held="held" in self.condition)
         if self.condition.endswith("repair") and self.condition != "no repair":
             rules = replace(rules, detector=detector_named("shipped"))
         rng = np.random.default_rng([self.clip.seed, 6])
@@ -191,8 +190,8 @@ def report_of_alarms(outcome: Outcome) -> Report:
         rows.append((label, *shares, sum(sum(row.result.tried) for row in group)))
         rows.append((f"thesis, {label}", *printed[label], 50000))
     columns = (Column("histogram"), *(Column(name, 2, percent=True) for name in PARTS), Column("boxes", 0))
-    notes = ("Mistaken: as like the part, by Bhattacharyya's coefficient, as boxes are on average that overlap with it by "
-             "more than half.",)  # fmt: skip
+    notes = ("Mistaken: as like the part (Bhattacharyya's coefficient) as boxes are on average that overlap with it by more "
+             "than half.",)  # fmt: skip
     return Report((Table("false-alarms", "Random boxes mistaken for a part (6.2.3)", columns, tuple(rows), notes),))
 
 
