@@ -190,8 +190,8 @@ def report_of_alarms(outcome: Outcome) -> Report:
         rows.append((label, *shares, sum(sum(row.result.tried) for row in group)))
         rows.append((f"thesis, {label}", *printed[label], 50000))
     columns = (Column("histogram"), *(Column(name, 2, percent=True) for name in PARTS), Column("boxes", 0))
-    notes = ("Mistaken: as like the part (Bhattacharyya's coefficient) as boxes are on average that overlap with it by more "
-             "than half.",)  # fmt: skip
+    notes = ("Mistaken: as like the part (Bhattacharyya's coefficient) as boxes that overlap with it by more than half are "
+             "on average.",)  # fmt: skip
     return Report((Table("false-alarms", "Random boxes mistaken for a part (6.2.3)", columns, tuple(rows), notes),))
 
 
