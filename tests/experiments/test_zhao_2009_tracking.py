@@ -1,4 +1,4 @@
-"""Trials of tracking in made halls, and tables from results that are known."""
+"""Trials of tracking in made clips, and tables from results that are known."""
 
 from __future__ import annotations
 
@@ -12,7 +12,6 @@ import pytest
 from made_people import Walker, empty_scene, shots_of
 from muybridge.experiments.experiment import Amount, Outcome, Row
 from muybridge.experiments.zhao_2009 import EXPERIMENT
-from muybridge.experiments.zhao_2009.hall import Hall, HallPictures
 from muybridge.experiments.zhao_2009.parts import (
     ALARMS,
     CONDITIONS,
@@ -22,17 +21,18 @@ from muybridge.experiments.zhao_2009.parts import (
     RateResult,
     RateTrial,
 )
+from muybridge.experiments.zhao_2009.people_clips import ClipPictures, PeopleClip
 from muybridge.experiments.zhao_2009.tracking import BOXES, METHODS, PARTICLES, BoxResult, BoxTrial
 
 EMPTY = empty_scene()
-CLIP = Hall(seed=0, rate=10.0, size=(320, 240))
+CLIP = PeopleClip(seed=0, rate=10.0, size=(320, 240))
 QUICK = Amount(True, 2)
 
 
 @pytest.fixture(scope="module")
-def hall() -> HallPictures:
+def hall() -> ClipPictures:
     """One who crosses in 4 seconds."""
-    return HallPictures(EMPTY, tuple(shots_of([Walker((30, 170), (290, 170), 0, 39)], 40, EMPTY)))
+    return ClipPictures(EMPTY, tuple(shots_of([Walker((30, 170), (290, 170), 0, 39)], 40, EMPTY)))
 
 
 def outcome(cases: list, results: list, folder: Path) -> Outcome:
@@ -41,27 +41,27 @@ def outcome(cases: list, results: list, folder: Path) -> Outcome:
 
 @pytest.mark.parametrize("trial", [BoxTrial(CLIP, "ours", 300), BoxTrial(CLIP, "Nummiaro", 100), RateTrial(CLIP, "held"),
                                    AlarmTrial(CLIP, True, boxes=20, pictures=2)], ids=lambda t: type(t).__name__)  # fmt: skip
-def test_a_result_survives_json(trial, hall: HallPictures) -> None:
+def test_a_result_survives_json(trial, hall: ClipPictures) -> None:
     result = trial.measure(hall)
     assert trial.result(json.loads(json.dumps(asdict(result)))) == result
     assert trial.digest != replace(trial, clip=replace(CLIP, seed=1)).digest
 
 
-def test_ours_stays_on_the_walker(hall: HallPictures) -> None:
+def test_ours_stays_on_the_walker(hall: ClipPictures) -> None:
     """Clear colours before a plain background: the centre of a 22 x 62 px box stays within a few pixels."""
     result = BoxTrial(CLIP, "ours", 300).measure(hall)
     assert result.people == 1 and result.deviation < 8 and result.frames_per_second > 0
-    nobody = BoxTrial(CLIP, "ours", 300).measure(HallPictures(EMPTY, hall.shots[:10]))
+    nobody = BoxTrial(CLIP, "ours", 300).measure(ClipPictures(EMPTY, hall.shots[:10]))
     assert nobody.people == 0 and np.isnan(nobody.deviation)
 
 
-def test_parts_start_right(hall: HallPictures) -> None:
+def test_parts_start_right(hall: ClipPictures) -> None:
     result = RateTrial(CLIP, "no repair").measure(hall)
     assert [len(texts) for texts in result.right] == [1] * 4 and len(result.right[0][0]) == 40
     assert result.right[1][0].startswith("111") and result.right[3][0].startswith("111")
 
 
-def test_fitted_bins_are_mistaken_less(hall: HallPictures) -> None:
+def test_fitted_bins_are_mistaken_less(hall: ClipPictures) -> None:
     """6.2.3: a tenth in the thesis; here at most as many."""
     fitted, even = (AlarmTrial(CLIP, mapping, boxes=200, pictures=3).measure(hall) for mapping in (True, False))
     assert fitted.tried == even.tried and min(fitted.tried) > 300
@@ -98,7 +98,7 @@ def test_the_parts_are_on_the_command_line() -> None:
 
 
 def test_a_hall_is_kept_and_dropped(tmp_path: Path) -> None:
-    clip = Hall(seed=1, duration=2.0, rate=5.0, people=1, size=(64, 48))
+    clip = PeopleClip(seed=1, duration=2.0, rate=5.0, people=1, size=(64, 48))
     clip.prepare(tmp_path, [])
     kept, made = clip.load(tmp_path), clip.render()
     np.testing.assert_array_equal(kept.empty, made.empty)

@@ -7,7 +7,7 @@ against our numbers.
 |---|---|
 | `conditions` | how much is run, and what kinds of trials share |
 | `speed` | background models, frames a second |
-| `hall` | rendered clips, and the trials that look at them |
+| `people_clips` | rendered clips, and the trials that look at them |
 | `tracking` | one box a person by colour, against Nummiaro's: Tables 1 to 4 |
 | `parts` | parts with and without repair: Fig. 6.15; boxes mistaken for parts |
 """

@@ -15,7 +15,7 @@ import numpy as np
 from muybridge.experiments.experiment import Amount, Case, Outcome, Part, Report
 from muybridge.experiments.statistics import over_seeds
 from muybridge.experiments.tables import Cell, Column, Table
-from muybridge.experiments.zhao_2009.hall import HallPictures, HallTrial, halls
+from muybridge.experiments.zhao_2009.people_clips import ClipPictures, PeopleTrial, people_clips
 from muybridge.people.box import states_from_boxes
 from muybridge.people.colour_likelihood import pixel_boxes
 from muybridge.people.failure import detector_named
@@ -48,13 +48,13 @@ class RateResult:
 
 
 @dataclass(frozen=True)
-class RateTrial(HallTrial):
+class RateTrial(PeopleTrial):
     """One condition."""
 
     RESULT: ClassVar[type[Any]] = RateResult
     condition: str = "repair"
 
-    def measure(self, pictures: HallPictures) -> RateResult:
+    def measure(self, pictures: ClipPictures) -> RateResult:
         """Follow everybody by their parts."""
         rules = replace(thesis_rules(self.clip.size, self.clip.rate), held="held" in self.condition)
         if self.condition.endswith("repair") and self.condition != "no repair":
@@ -73,7 +73,7 @@ class RateTrial(HallTrial):
 
 def cases_of_rates(scale: Amount) -> Iterator[Case]:
     """Four conditions on one clip a seed."""
-    for clip in halls(scale.seeds):
+    for clip in people_clips(scale.seeds):
         for condition in CONDITIONS:
             yield Case(condition, RateTrial(clip, condition))
 
@@ -121,7 +121,7 @@ class AlarmResult:
 
 
 @dataclass(frozen=True)
-class AlarmTrial(HallTrial):
+class AlarmTrial(PeopleTrial):
     """Random boxes against parts, with bins fitted to the part or even ones (thesis, 6.2.3)."""
 
     RESULT: ClassVar[type[Any]] = AlarmResult
@@ -129,7 +129,7 @@ class AlarmTrial(HallTrial):
     boxes: int = 1000  # a part and picture
     pictures: int = 8
 
-    def measure(self, pictures: HallPictures) -> AlarmResult:
+    def measure(self, pictures: ClipPictures) -> AlarmResult:
         """The first person seen whole in pictures spread over the clip."""
         rng = np.random.default_rng([self.clip.seed, 623])
         tried, mistaken = np.zeros(len(PARTS), int), np.zeros(len(PARTS), int)
@@ -175,7 +175,7 @@ def _likeness(picture: np.ndarray, box: np.ndarray, mapping: bool) -> Any:
 
 def cases_of_alarms(scale: Amount) -> Iterator[Case]:
     """With and without the mapping."""
-    for clip in halls(scale.seeds):
+    for clip in people_clips(scale.seeds):
         for mapping in (True, False):
             yield Case("fitted bins" if mapping else "even bins", AlarmTrial(clip, mapping))
 

@@ -20,7 +20,7 @@ COLUMNS = ("image", "ids", "numbers", "boxes", "visible", "parts", "parts_visibl
 
 
 @dataclass(frozen=True, eq=False)
-class HallPictures:
+class ClipPictures:
     """empty : (H, W, 3) uint8 BGR, the median of pictures without people; shots : T frames."""
 
     empty: np.ndarray
@@ -28,7 +28,7 @@ class HallPictures:
 
 
 @dataclass(frozen=True)
-class Hall:
+class PeopleClip:
     """A clip of `synthetic.surveillance_scene` at the picture size of the thesis' second set."""
 
     seed: int = 0
@@ -63,14 +63,14 @@ class Hall:
         """The pictures can be rendered again."""
         self.path(folder).unlink(missing_ok=True)
 
-    def load(self, folder: Path) -> HallPictures:
+    def load(self, folder: Path) -> ClipPictures:
         """What `prepare` left."""
         with np.load(self.path(folder), allow_pickle=False) as stored:
             count = sum(name.startswith("ids") for name in stored.files)
             shots = tuple(PeopleShot(**{name: stored[f"{name}{t}"] for name in COLUMNS}) for t in range(count))
-            return HallPictures(stored["empty"], shots)
+            return ClipPictures(stored["empty"], shots)
 
-    def render(self) -> HallPictures:
+    def render(self) -> ClipPictures:
         """The whole clip, in memory."""
         from muybridge.synthetic.crowd import shoot_people
         from muybridge.synthetic.scene import empty
@@ -79,16 +79,16 @@ class Hall:
         scene = surveillance_scene(seed=self.seed, duration=self.duration, rate=self.rate, people=self.people,
                                    size=self.size, events=self.events)  # fmt: skip
         bare = np.median([pictures[0] for pictures in empty(scene, EMPTY_PICTURES)], axis=0).astype(np.uint8)
-        return HallPictures(bare, tuple(shoot_people(scene, t) for t in range(scene.frame_count)))
+        return ClipPictures(bare, tuple(shoot_people(scene, t) for t in range(scene.frame_count)))
 
 
 @dataclass(frozen=True)
-class HallTrial:
+class PeopleTrial:
     """What trials on such clips share; a kind of trial says what is measured, and as what it is kept."""
 
     RESULT: ClassVar[type[Any]]
     REVISION: ClassVar[int] = 1  # raise it when the measurement changes
-    clip: Hall
+    clip: PeopleClip
 
     @property
     def description(self) -> dict[str, Any]:
@@ -109,14 +109,14 @@ class HallTrial:
         """Half a second of a small hall."""
         from dataclasses import replace
 
-        short = Hall(seed=1, duration=2.0, rate=10.0, people=1, size=(160, 120))
+        short = PeopleClip(seed=1, duration=2.0, rate=10.0, people=1, size=(160, 120))
         replace(self, clip=short).measure(short.render())
 
     def run(self, folder: Path) -> Any:
         """See `RunnableTrial`."""
         return self.measure(self.clip.load(folder))
 
-    def measure(self, pictures: HallPictures) -> Any:
+    def measure(self, pictures: ClipPictures) -> Any:
         """The result."""
         raise NotImplementedError
 
@@ -125,10 +125,10 @@ class HallTrial:
         return self.RESULT(**{field.name: _tuples(values[field.name]) for field in fields(self.RESULT)})
 
 
-def halls(seeds: int, first: int = 0, **settings: Any) -> Iterator[Hall]:
+def people_clips(seeds: int, first: int = 0, **settings: Any) -> Iterator[PeopleClip]:
     """One clip a seed."""
     for seed in range(first, first + seeds):
-        yield Hall(seed, **settings)
+        yield PeopleClip(seed, **settings)
 
 
 def _tuples(value: Any) -> Any:
