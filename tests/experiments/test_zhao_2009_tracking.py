@@ -39,8 +39,15 @@ def outcome(cases: list, results: list, folder: Path) -> Outcome:
     return Outcome(tuple(Row(case, result) for case, result in zip(cases, results, strict=True)), QUICK, folder)
 
 
-@pytest.mark.parametrize("trial", [BoxTrial(CLIP, "ours", 300), BoxTrial(CLIP, "Nummiaro", 100), RateTrial(CLIP, "held"),
-                                   AlarmTrial(CLIP, True, boxes=20, pictures=2)], ids=lambda t: type(t).__name__)  # fmt: skip
+TRIALS = [
+    BoxTrial(CLIP, "ours", 300),
+    BoxTrial(CLIP, "Nummiaro", 100),
+    RateTrial(CLIP, "repair"),
+    AlarmTrial(CLIP, True, boxes=20, pictures=2),
+]
+
+
+@pytest.mark.parametrize("trial", TRIALS, ids=lambda trial: type(trial).__name__)
 def test_a_result_survives_json(trial, hall: ClipPictures) -> None:
     result = trial.measure(hall)
     assert trial.result(json.loads(json.dumps(asdict(result)))) == result

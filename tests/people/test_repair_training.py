@@ -68,7 +68,7 @@ def test_what_is_refused() -> None:
     good = replace(examples(np.random.default_rng(0)), covered=np.ones((300, 3)))
     with pytest.raises(InputError, match="longer or harder clips"):
         learn(good, good, CONFIG)
-    for wrong in ({"held_out": 5}, {"failed": 0.7}, {"spreads": (0.0,)}, {"false_alarms": 1.0}):
+    for wrong in ({"held_out": 3}, {"failed": 0.7}, {"spreads": (0.0,)}, {"false_alarms": 1.0}):
         with pytest.raises(InputError, match="training"):
             replace(CONFIG, **wrong)
     with pytest.raises(InputError, match="did you mean scenes"):

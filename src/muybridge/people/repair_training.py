@@ -39,7 +39,7 @@ class Progress(Protocol):
 class RepairTraining:
     """Settings."""
 
-    scenes: int = 4
+    scenes: int = 3
     held_out: int = 1  # of the scenes, to move the machines and to judge them
     duration_s: float = 16.0  # of a scene
     frame_rate: float = 25.0
