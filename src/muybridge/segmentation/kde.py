@@ -23,7 +23,7 @@ back and their differences are still those between consecutive pictures; medians
 interpolated; kernels fall slower than a normal density beyond four widths. Colours are B, G, R, not chromaticities:
 shadows are left to `muybridge.segmentation.shadows`. There is one model, updated selectively (their short-term model)
 with a patience after which foreground is learnt too, where they intersect it with a second one that learns
-everything.
+everything. A large component is asked at one pixel in sixteen whether it has moved.
 
 Cost: O(N) a pixel, less where a few samples already decide.
 """
@@ -52,6 +52,8 @@ from muybridge.segmentation.pictures import check_same_shape, learn_each
 REFRESH = 32
 """Pictures in which the bandwidths of all rows are measured again, some rows at each."""
 MOST_SAMPLES = 255
+LARGE, STRIDE = 200, 4
+"""Pixels from which on a component is asked at every fourth pixel of every fourth row whether it has moved."""
 
 
 @dataclass(frozen=True)
@@ -105,6 +107,8 @@ class KdeBackground:
         self.counts, self._heads = np.zeros((height, width), np.uint8), np.zeros((height, width), np.uint8)
         self.levels = np.zeros((height, width, channels), np.uint8)
         self._table, self._seen = kernel_table(), 0
+        self._lattice = np.zeros((height, width), bool)
+        self._lattice[::STRIDE, ::STRIDE] = True
         self._gate, self._everything = Gate((height, width), self.config.patience), np.ones((height, width), bool)
 
     @classmethod
@@ -146,14 +150,15 @@ class KdeBackground:
         """The mask without pixels, and components, whose colours are at home beside them."""
         import cv2
 
+        count, label, stats, _ = cv2.connectedComponentsWithStats(mask.view(np.uint8), connectivity=8)
+        asked = mask & ((stats[:, cv2.CC_STAT_AREA] < LARGE)[label] | self._lattice)
         beside = np.empty(mask.shape, np.float32)
         displaced_density(
-            picture, mask, self.samples, self.counts, self.levels, self._table, self.config.radius, beside
+            picture, asked, self.samples, self.counts, self.levels, self._table, self.config.radius, beside
         )
-        gain = np.where(mask, np.log(np.maximum(beside, np.float32(LEAST))), 0.0)
-        count, label = cv2.connectedComponents(mask.view(np.uint8), connectivity=8)
+        gain = np.where(asked, np.log(np.maximum(beside, np.float32(LEAST))), 0.0)
         whole = np.bincount(label.ravel(), weights=gain.ravel(), minlength=count)
-        return mask & ~((gain > -self.config.displacement) & (whole > 0)[label])
+        return mask & ~((~asked | (gain > -self.config.displacement)) & (whole > 0)[label])
 
     def _learn(self, picture: NDArray, learnt: NDArray) -> None:
         """Take the picture where its turn has come: two in a row, then none for a while; the first N all."""
