@@ -17,7 +17,7 @@ def synth(
     set_: Overrides = None,
     reporting: Reporting = DEFAULT_REPORTING,
 ) -> None:
-    """Render a scene with known truth into a folder that `track` takes.
+    """Render a scene with known truth into a folder that `track`, or `people`, takes.
 
     Parameters
     ----------
@@ -39,14 +39,15 @@ def synth(
     check_replaceable(out)
     try:
         with reporting.progress("render") as progress:
-            job = write_scene(described, out, progress=progress)
+            made = write_scene(described, out, progress=progress)
     except KeyboardInterrupt:
         raise KeyboardInterrupt("interrupted while rendering; nothing was written") from None
-    reporting.say(f"{described.frame_count} frames of {len(described.rig)} cameras in {out}; muybridge track {job}")
+    next_ = "people" if described.follow == "people" else "track"
+    reporting.say(f"{described.frame_count} frames of {len(described.rig)} cameras in {out}; muybridge {next_} {made}")
     reporting.finish(
         {
             "out": out,
-            "job": job,
+            **({"video": made} if described.follow == "people" else {"job": made}),
             "frames": described.frame_count,
             "cameras": list(described.rig.names),
             "rate": described.rate,

@@ -33,11 +33,16 @@ def read_mot(path: str | Path) -> BoxSeries:
 
 def write_mot(path: str | Path, series: BoxSeries) -> None:
     """Write a whole file, or leave the one that was there untouched."""
+    replace_file(path, mot_text(series).encode())
+
+
+def mot_text(series: BoxSeries) -> str:
+    """The lines of a file; files of successive frames may be written one after the other."""
     lines = []
     for frame, identity, box, confidence in zip(series.frames, series.ids, _moved(series.boxes, 1), series.confidence):
         numbers = ",".join(fixed(float(value), DECIMALS) for value in (*box, confidence))
         lines.append(f"{frame + 1},{identity},{numbers},-1,-1,-1\n")
-    replace_file(path, "".join(lines).encode())
+    return "".join(lines)
 
 
 def _moved(boxes: np.ndarray, by: int) -> np.ndarray:

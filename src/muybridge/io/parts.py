@@ -61,12 +61,17 @@ class PartSeries:
 
 def write_parts(path: str | Path, parts: PartSeries) -> None:
     """Write a whole parts.csv, or leave the one that was there untouched."""
-    lines = [HEADER]
+    replace_file(path, f"{HEADER}\n{parts_text(parts)}".encode())
+
+
+def parts_text(parts: PartSeries) -> str:
+    """The lines below the header; those of successive frames may be written one after the other."""
+    lines = []
     moved = parts.boxes + np.array([1, 1, 0, 0])
     for frame, identity, name, box, score in zip(parts.frames, parts.ids, parts.names, moved, parts.scores):
         numbers = ",".join(fixed(float(value), DECIMALS) for value in (*box, score))
-        lines.append(f"{frame + 1},{identity},{name},{numbers}")
-    replace_file(path, ("\n".join(lines) + "\n").encode())
+        lines.append(f"{frame + 1},{identity},{name},{numbers}\n")
+    return "".join(lines)
 
 
 def read_parts(path: str | Path) -> PartSeries:

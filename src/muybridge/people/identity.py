@@ -118,6 +118,11 @@ class Identities:
                 person.remember(picture, number)
                 self._recall(picture, number, person, gone)
 
+    def forget(self, known: set[Person]) -> None:
+        """Keep only what concerns these."""
+        self._meetings = {pair: meeting for pair, meeting in self._meetings.items() if pair <= known}
+        self._likeness = {key: values for key, values in self._likeness.items() if key[0] in known}
+
     def _meet(self, number: int, a: Person, b: Person) -> None:
         """They are close; what was compared before counts no more."""
         gap = gap_between(a.body.box, b.body.box)

@@ -111,6 +111,32 @@ class PeopleTracker:
         """Everybody who was believed in so far, from the first sight to the last."""
         return gathered(person for person in self.gone + self.people if person.confirmed)
 
+    def settle(self, frame: int) -> Tracks:
+        """Tracks up to a frame, for the last time: they are forgotten here, so that a stream may go on for ever.
+
+        Whoever was lost, and has no sighting after that frame, is forgotten altogether.
+        """
+        settled = gathered((person for person in self.gone + self.people if person.confirmed), frame)
+        for person in self.gone + self.people:
+            person.sightings = [sighting for sighting in person.sightings if sighting.frame > frame]
+        self.gone = [person for person in self.gone if person.sightings]
+        self._identities.forget({*self.gone, *self.people})
+        return settled
+
+    def adopt(self, scene: Scene) -> None:
+        """Go on in the same scene, of which more is known by now."""
+        if scene.size != self.scene.size:
+            raise InputError("scene", expected=f"the size {self.scene.size}", got=str(scene.size))
+        self.scene, self._background = scene, to_luma_chroma(scene.background)
+        self._places = None if scene.ground is None else Places.on(scene.ground, scene.size, self.config.smallest)
+
+    def abandon(self) -> None:
+        """Give everybody up: nothing is where it was."""
+        for person in self.people:
+            person.lost = True
+        self.gone += self.people
+        self.people = []
+
     def _frames(self, seconds: float) -> int:
         return max(1, round(seconds * self._rate))
 

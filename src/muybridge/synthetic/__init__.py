@@ -2,6 +2,8 @@
 
 ================  =========================================================================================
 `presets`         `preset_scene(name, seed=...)`: easy, studio, humaneva, hard
+`surveillance`    `surveillance_scene(seed=...)`: one camera, people who come and go
+`crowd`           `shoot_people(scene, frame)`: its pictures, and who is where in them; `crowd_files`: as files
 `scene`           `demo_scene(seed)`, `render(scene, frame)`, `empty(scene, n)`, `truth(scene)`
 `description`     `Scene`, `Person`: what a scene is made from
 `scene_file`      `read(path)`: SCENE.toml -> `Scene`; `scene_text`: back again; `scene_tables`: its keys
@@ -16,6 +18,7 @@
 `motion`          `Motion`, `Recorded`, `perform(figure, motion)`: what a figure does, made or recorded
 `clip`            `Motion`: what may be done and how; `Track`: what then was; `posture`: between two frames
 `gaits`           walk, wave, crouch, punch: joint angles over time; `angles` turns bones by them
+`route`           walks through points of the floor, with stops
 `planting`        feet on the floor that hardly slip, for motions told by angles
 `footwork`        jog, hop, jump, turn, sidestep: told by where the feet go
 `stepping`        footprints, free fall between them, and legs (`limbs`) that reach them

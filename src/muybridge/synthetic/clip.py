@@ -9,7 +9,7 @@ import numpy as np
 from muybridge.errors import InputError
 
 #: Their order seeds what they do: new ones come last.
-KINDS = ("walk", "wave", "crouch", "jog", "hop", "jump", "turn", "sidestep", "punch", "route")
+KINDS = ("walk", "wave", "crouch", "jog", "hop", "jump", "turn", "sidestep", "punch")
 
 
 @dataclass(frozen=True)
@@ -20,8 +20,7 @@ class Motion:
     ----------
     kind : one of KINDS
         "walk"; "wave", standing, one arm up; "crouch", down and up again; "jog"; on the
-        spot "hop" on one leg, "jump" on both, and "turn"; "sidestep", facing ahead; "punch", standing;
-        "route", a walk through the points of `way`
+        spot "hop" on one leg, "jump" on both, and "turn"; "sidestep", facing ahead; "punch", standing
     duration, rate : seconds, frames per second
     heading : radians, at the middle of the clip, counter-clockwise from +x
         Walked and jogged at; faced, where the feet stay on the spot or go sideways.
@@ -29,8 +28,8 @@ class Motion:
     place : (x, y) metres, world, of the pelvis at the middle of the clip
     cadence : pace: strides (two steps) per second of a walk, others in proportion
     vigour : factor on the amplitudes, 1 = table
-    way : of a route: (x, y, seconds) of each point, metres, world, and how long one stands there; after the last point
-        to the end of the clip. Heading, turn_rate and place then have no say
+    way : of a walk from point to point: (x, y, seconds) of each, metres, world, and how long one stands there; at the
+        last one to the end of the clip. Heading, turn_rate and place then have no say
     """
 
     kind: str = "walk"
@@ -50,9 +49,10 @@ class Motion:
         for name in ("duration", "rate", "cadence", "vigour"):
             if not (np.isfinite(getattr(self, name)) and getattr(self, name) > 0):
                 raise InputError(f"motion: {name}", expected="a positive number", got=str(getattr(self, name)))
-        if (self.kind == "route") != (len(self.way) >= 2):
-            raise InputError("motion: way", expected="two points or more for a route, none for anything else",
-                             got=f"{len(self.way)} for {self.kind}")  # fmt: skip
+        if self.way and (self.kind != "walk" or len(self.way) < 2):
+            raise InputError(
+                "motion: way", expected="two points or more, of a walk", got=f"{len(self.way)} of a {self.kind}"
+            )
         if self.way and not (np.isfinite(self.way).all() and min(point[2] for point in self.way) >= 0):
             raise InputError("motion: way", expected="finite x, y and seconds, seconds 0 or more", got=str(self.way))
 

@@ -30,6 +30,8 @@ def lay_over(background: np.ndarray, layers: Sequence[Layer]) -> np.ndarray:
     colours, depth = np.zeros((*shape, 3), dtype=np.float32), np.full(shape, np.inf, dtype=np.float32)
     for index, layer in enumerate(layers):
         x0, y0, x1, y1 = layer.window
+        if x0 == x1 or y0 == y1:
+            continue  # beside the picture, and so perhaps beside the union too
         place = index, slice(y0 - top, y1 - top), slice(x0 - left, x1 - left)
         coverage[place], colours[place], depth[place] = layer.coverage, layer.colours, layer.depth
     composite(background[top:bottom, left:right], coverage, colours, depth, visible)

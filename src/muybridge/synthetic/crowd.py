@@ -108,8 +108,9 @@ def _measured(camera: Camera, actor: Actor, mesh: Mesh, seen: np.ndarray, share:
     height, width = share.shape
     rows, columns = np.arange(marks.shape[0]) + top, np.arange(marks.shape[1]) + left
     in_picture = np.ix_((rows >= 0) & (rows < height), (columns >= 0) & (columns < width))
-    window = slice(max(top, 0), max(min(top + len(rows), height), 0)), slice(
-        max(left, 0), max(min(left + len(columns), width), 0)
+    window = (
+        slice(max(top, 0), max(min(top + len(rows), height), 0)),
+        slice(max(left, 0), max(min(left + len(columns), width), 0)),
     )
     boxes, visible = np.zeros((1 + REST, 4)), np.zeros(1 + REST)
     inside = np.count_nonzero(marks[in_picture]) / np.count_nonzero(marks)

@@ -67,7 +67,7 @@ class Scene:
     noise : standard deviation of a grey value of 128, in grey values; it grows with the square root of the light
     drift : relative change of the light, up and down, over the clip
     shadow : 0 (none) to 1 (black): how dark the cast shadow is
-    others : people who are in the way; they are in no mask and no truth
+    others : people who are in the way, in no mask and no truth; or more to be followed
     occluders : things that stand about, in the empty frames too
     light : lamps, and when they go on and off
     sensor : exposure, shutter, compression

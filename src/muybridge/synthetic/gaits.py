@@ -24,9 +24,7 @@ TOES = (8, 0, 0, 0, 4, 24, 26, 8, 6, 8)
 TAKES, GIVES = (0.0, 0.10), (0.50, 0.62)
 
 
-def walk(
-    rng: np.random.Generator, motion: Motion, strides: np.ndarray | None = None
-) -> tuple[Angles, np.ndarray]:
+def walk(rng: np.random.Generator, motion: Motion, strides: np.ndarray | None = None) -> tuple[Angles, np.ndarray]:
     """Normal gait: legs by tables, arms against them; strides (T,) done so far, at an even cadence where None."""
     phase = rng.uniform() + (motion.cadence * motion.times if strides is None else strides)
     swing, lag = rng.uniform(17, 25), rng.uniform(-0.03, 0.03)

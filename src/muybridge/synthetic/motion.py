@@ -45,7 +45,7 @@ def perform(figure: Figure, motion: Motion | Recorded) -> Track:
 def _made(figure: Figure, motion: Motion) -> tuple[np.ndarray, np.ndarray]:
     """(T, B, 3, 3) and (T, B, 3) metres, world: a motion that needs no recording."""
     rng = np.random.default_rng([motion.seed, KINDS.index(motion.kind)])
-    if motion.kind == "route":
+    if motion.way:
         return route(rng, figure, motion)
     return (_by_steps if motion.kind in FROM_STEPS else _by_angles)(rng, figure, motion)
 

@@ -60,7 +60,7 @@ def route(rng: np.random.Generator, figure: Figure, motion: Motion) -> tuple[np.
 
 def stride_length(figure: Figure, motion: Motion) -> float:
     """Metres of a stride, two steps, of the figure's walk straight ahead."""
-    straight = replace(motion, kind="walk", way=(), duration=STRIDES / motion.cadence + 1 / motion.rate, turn_rate=0.0)
+    straight = replace(motion, way=(), duration=STRIDES / motion.cadence + 1 / motion.rate, turn_rate=0.0)
     angles, bearing = walk(np.random.default_rng(0), straight)
     worlds, places = _posed(figure, rotations(figure, angles, np.zeros(len(straight.times))))
     shift = planted(figure, worlds, places, bearing, straight)

@@ -186,7 +186,7 @@ def _filmed(
     things: tuple[Layer, ...],
     lamp: Lamp,
 ) -> tuple[np.ndarray, np.ndarray, list[Layer]]:
-    """Light (H, W, 3) and how much of each pixel each layer is (L, H, W), over the open shutter; one moment's layers."""
+    """Light (H, W, 3) and how much of each pixel is each layer (L, H, W), over the open shutter; a moment's layers."""
     if len(moments) == 1:
         layers = _drawn(camera, made.actors, moments[0], lamp)
         return backdrop, lay_over(backdrop, [*layers, *things]), layers

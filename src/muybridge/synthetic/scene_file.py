@@ -25,6 +25,8 @@ from muybridge.synthetic.placing import check_seen
 from muybridge.synthetic.presets import PRESETS, preset_scene
 from muybridge.synthetic.rigs import looking_at
 from muybridge.synthetic.scene_tables import (
+    SURVEILLANCE,
+    SURVEILLANCE_KEYS,
     CameraTable,
     GarmentTable,
     LampTable,
@@ -35,11 +37,12 @@ from muybridge.synthetic.scene_tables import (
     SceneTable,
     given,
 )
+from muybridge.synthetic.surveillance import surveillance_scene
 
 if TYPE_CHECKING:
     from muybridge.synthetic.recorded import Recorded
 
-MADE = ("turn_rate", "cadence", "vigour", "seed", "heading", "place")
+MADE = ("turn_rate", "way", "cadence", "vigour", "seed", "heading", "place")
 """Keys of [motion] that are fields of `Motion`."""
 
 
@@ -80,6 +83,7 @@ def scene_of(table: SceneTable) -> Scene:
         sensor=replace(base.sensor, **given(table.sensor, without=("noise",))),
         **given(table.light, only=("drift", "shadow")),
         **given(table.sensor, only=("noise",)),
+        **given(table, only=("follow",)),
     )
     if table.occluder is not None:
         scene = replace(scene, occluders=tuple(_occluder(row) for row in table.occluder))
@@ -96,6 +100,9 @@ def _base(table: SceneTable) -> Scene:
     rig = _rig(table.camera) if table.camera else None
     if table.camera is not None and not table.camera:
         raise InputError("scene: camera", expected="at least one camera", got="none")
+    if table.preset == SURVEILLANCE:
+        asked = given(table, only=("duration", "rate", *SURVEILLANCE_KEYS))
+        return surveillance_scene(seed=table.seed, **asked)
     action = table.motion or MotionTable()
     preset = PRESETS.get(table.preset)
     rate = table.rate or (preset.rate if preset else 30.0)

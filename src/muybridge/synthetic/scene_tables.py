@@ -17,6 +17,8 @@ Grey = Annotated[int, Meta(ge=0, le=255)]
 Colour = tuple[Grey, Grey, Grey]
 """Blue, green, red."""
 Place = tuple[float, float]
+Point = tuple[float, float, float]
+"""x, y, and how long one stands there."""
 Vector = tuple[float, float, float]
 Matrix = tuple[Vector, Vector, Vector]
 Pixels = Annotated[int, Meta(ge=16, le=8192)]
@@ -37,6 +39,7 @@ class MotionTable(Table, frozen=True):
 
     kind: str | None = None
     turn_rate: float | None = None
+    way: Annotated[tuple[Point, ...], Meta(min_length=2)] | None = None
     cadence: Positive | None = None
     vigour: Positive | None = None
     seed: Annotated[int, Meta(ge=0)] | None = None
@@ -51,7 +54,11 @@ class MotionTable(Table, frozen=True):
     place: Place | None = None
 
     def __post_init__(self) -> None:
-        made = [name for name in ("kind", "turn_rate", "cadence", "vigour", "seed") if getattr(self, name) is not None]
+        made = [
+            name
+            for name in ("kind", "turn_rate", "way", "cadence", "vigour", "seed")
+            if getattr(self, name) is not None
+        ]
         if self.file is not None and made:
             raise ValueError(f"expected kind or file, got file and {made[0]}")
         recorded = ("start", "end", "skeleton", "scale", "axes", "file_rate")
@@ -155,6 +162,12 @@ class OccluderTable(Table, frozen=True):
     colour: Colour | None = None
     second: Colour | None = None
     tile: Positive | None = None
+    since: float | None = None
+    until: float | None = None
+
+
+SURVEILLANCE = "surveillance"
+SURVEILLANCE_KEYS = ("people", "size", "events", "linger")
 
 
 class SceneTable(Table, frozen=True):
@@ -166,6 +179,11 @@ class SceneTable(Table, frozen=True):
     rate: Positive | None = None
     view: Literal["ring", "side"] | None = None
     cameras: int | None = None
+    follow: Literal["person", "people"] | None = None
+    people: int | None = None
+    size: tuple[Pixels, Pixels] | None = None
+    events: tuple[str, ...] | None = None
+    linger: Positive | None = None
     person: PersonTable = PersonTable()
     motion: MotionTable | None = None
     camera: tuple[CameraTable, ...] | None = None
@@ -180,10 +198,21 @@ class SceneTable(Table, frozen=True):
             raise ValueError("expected cameras = N or [[camera]] tables, got both")
         if self.view is not None and self.camera is not None:
             raise ValueError("expected view or [[camera]] tables, got both")
+        self._check_preset()
         if self.person.motion is not None:
             raise ValueError("expected the person's motion in [motion], got [person.motion]")
         if self.motion is not None and self.motion.end is not None and self.duration is not None:
             raise ValueError("expected duration or motion.end, got both")
+
+    def _check_preset(self) -> None:
+        """The surveillance preset has keys of its own, and decides who walks where before one camera."""
+        own = [name for name in SURVEILLANCE_KEYS if getattr(self, name) is not None]
+        if own and self.preset != SURVEILLANCE:
+            raise ValueError(f'expected {own[0]} with preset = "{SURVEILLANCE}", got "{self.preset}"')
+        other = [name for name in ("view", "cameras", "camera", "motion", "other") if getattr(self, name) is not None]
+        other += ["person"] * (self.person != PersonTable()) + ["room.kind"] * (self.room.kind is not None)
+        if other and self.preset == SURVEILLANCE:
+            raise ValueError(f'expected a preset other than "{SURVEILLANCE}", which decides {other[0]}')
 
 
 def given(table: Table, *, only: Sequence[str] | None = None, without: Sequence[str] = ()) -> dict[str, Any]:

@@ -24,6 +24,7 @@ def scene_table(scene: Scene) -> dict[str, Any]:
     """The nested tables of a scene file, complete."""
     motion = _motion(scene.person)
     table: dict[str, Any] = {"seed": scene.seed, "duration": motion.pop("duration", None), "rate": motion.pop("rate")}
+    table["follow"] = scene.follow
     if not scene.others:
         table["other"] = []
     if not scene.occluders:
@@ -50,7 +51,7 @@ def _person(person: Person) -> dict[str, Any]:
 
 def _motion(person: Person) -> dict[str, Any]:
     """A recorded motion has no duration of its own, and words that it leaves open are empty."""
-    return {key: value for key, value in asdict(person.motion).items() if value != ""}
+    return {key: value for key, value in asdict(person.motion).items() if value not in ("", ())}
 
 
 def _own_motion(person: Person) -> dict[str, Any]:

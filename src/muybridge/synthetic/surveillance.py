@@ -7,7 +7,7 @@ decides who, where, when, and what they wear: everybody something else.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -74,7 +74,7 @@ def surveillance_scene(
     names, worn = rng.permutation(figure_names()), rng.permutation(list(OUTFITS))
     crowd = []
     for number, way in enumerate(ways):
-        motion = Motion("route", duration, rate, cadence=rng.uniform(0.84, 0.94), seed=1000 * seed + number, way=way)
+        motion = Motion("walk", duration, rate, cadence=rng.uniform(0.84, 0.94), seed=1000 * seed + number, way=way)
         person = Person(str(names[number % len(names)]), motion, outfit(str(worn[number % len(worn)])))
         crowd.append(dressed([seed, number], person, (0.0, 0.015)))
     things = (*_door(rng, duration, "door" in events), *([pillar] if pillar else []))
@@ -104,7 +104,9 @@ def _door(rng: np.random.Generator, duration: float, opens: bool) -> list[Occlud
     wall = ROOM.half_width - 0.06
     side = float(rng.uniform(-2.5, 2.5))
     wood, begin = (62, 84, 108), float(rng.uniform(0.25, 0.4)) * duration
-    beyond = Occluder("box", (wall + 0.04, side), (0.04, DOOR[0], DOOR[2]), 0.0, "blotches", (196, 206, 210), (168, 184, 190))
+    beyond = Occluder(
+        "box", (wall + 0.04, side), (0.04, DOOR[0], DOOR[2]), 0.0, "blotches", (196, 206, 210), (168, 184, 190)
+    )
     leaves = []
     for step in range(STEPS + 1):
         turn = 1.1 * step / STEPS
@@ -184,7 +186,7 @@ def _way(
 
 def _planned(way: Way, duration: float) -> tuple[np.ndarray, int]:
     """(T, 2) metres at PLAN_RATE, and the frame up to which the way as it is decides them."""
-    planned = plan(Motion("route", duration, PLAN_RATE, way=way), SPEED)
+    planned = plan(Motion("walk", duration, PLAN_RATE, way=way), SPEED)
     arrives = int(np.argmax(planned.walked >= planned.walked[-1] - 1e-6))
     return planned.places, arrives + int(np.ceil(way[-1][2] * PLAN_RATE)) + 1
 

@@ -7,6 +7,8 @@ measures.toml                                        lengths of the person's seg
 scene.toml                                           the scene itself, to render it again
 job.toml                                             ties them together
 
+A scene of several people (`Scene.follow`) has scene, calibration, clip, empty clip, and the truth of `crowd_files`.
+
 All of it is made in a folder beside, which takes the name when it is whole: nothing half-written is ever found there.
 """
 
@@ -26,6 +28,7 @@ from muybridge.evaluation.names import JOINTS
 from muybridge.io import job as jobs
 from muybridge.io.disk import disk_errors, make_folder, temporary_name
 from muybridge.io.video_writer import VideoWriter
+from muybridge.synthetic.crowd_files import MASK_QUALITY, write_people
 from muybridge.synthetic.scene import Scene, empty, figure_of, shoot, truth
 from muybridge.synthetic.scene_text import scene_text
 from muybridge.synthetic.truth_files import (
@@ -37,7 +40,6 @@ from muybridge.synthetic.truth_files import (
     write_truth,
 )
 
-MASK_QUALITY = 18  # x264's constant rate factor: fine, whatever the pictures' is
 EMPTY_SECONDS = 1.0
 CALIBRATION_FILE, MEASURES_FILE, SCENE_FILE, JOB_FILE = "calibration.json", "measures.toml", "scene.toml", "job.toml"
 
@@ -66,7 +68,7 @@ def write_scene(scene: Scene, folder: str | Path, *, progress: Callable[[int, in
     Returns
     -------
     Path
-        The job file, for `track`.
+        The job file, for `track`; of a scene of several people the video, for `people`.
     """
     folder = Path(folder)
     check_replaceable(folder)
@@ -85,7 +87,7 @@ def write_scene(scene: Scene, folder: str | Path, *, progress: Callable[[int, in
     except BaseException:
         shutil.rmtree(unfinished, ignore_errors=True)
         raise
-    return folder / JOB_FILE
+    return folder / (f"{scene.rig.names[0]}.mp4" if scene.follow == "people" else JOB_FILE)
 
 
 def check_replaceable(folder: Path) -> None:
@@ -95,7 +97,7 @@ def check_replaceable(folder: Path) -> None:
     if not folder.is_dir():
         raise InputError(str(folder), expected="a folder, or a new name", got="a file", remedy="choose another --out")
     names = {entry.name for entry in folder.iterdir()}
-    if names and not {JOB_FILE, CALIBRATION_FILE, JOINTS_FILE} <= names:
+    if names and not {SCENE_FILE, CALIBRATION_FILE} <= names:
         raise InputError(str(folder), expected="a new or empty folder, or an earlier scene", got="other files in it",
                          remedy="choose another --out")  # fmt: skip
 
@@ -131,20 +133,23 @@ def job_of(scene: Scene, folder: Path, name: str = "") -> jobs.Job:
 
 
 def _write_all(scene: Scene, folder: Path, name: str, progress: Callable[[int, int], None] | None) -> None:
-    _write_texts(scene, folder)
+    _write_text(folder / SCENE_FILE, scene_text(scene))
     write_rig(folder / CALIBRATION_FILE, scene.rig)
+    _write_empty(scene, folder)
+    if scene.follow == "people":
+        write_people(scene, folder, progress)
+        return
+    _write_text(folder / MEASURES_FILE, _measures_text(scene))
     write_truth(folder / JOINTS_FILE, truth(scene))
     write_angles(folder / ANGLES_FILE, truth(scene))
-    _write_empty(scene, folder)
     _write_clip(scene, folder, progress)
     with disk_errors(folder / JOB_FILE):
         jobs.write(folder / JOB_FILE, job_of(scene, folder, name))
 
 
-def _write_texts(scene: Scene, folder: Path) -> None:
-    for name, text in ((MEASURES_FILE, _measures_text(scene)), (SCENE_FILE, scene_text(scene))):
-        with disk_errors(folder / name):
-            (folder / name).write_text(text, encoding="utf-8")
+def _write_text(path: Path, text: str) -> None:
+    with disk_errors(path):
+        path.write_text(text, encoding="utf-8")
 
 
 def _write_empty(scene: Scene, folder: Path) -> None:
