@@ -72,6 +72,8 @@ class KdeConfig:
     """Pixels: how far a background pixel may have moved (their neighbourhood has a diameter of 5); 0 drops nothing."""
     patience: int = 3600
     """Pictures after which foreground is learnt; 0 learns everything at once."""
+    rest: int = 75
+    """Pictures after which foreground that does not move is learnt; 0: not for that."""
     closing: int = 3
     """Pixels: as of the mixture model, whose mask is cleaned the same way."""
     opening: int = 5
@@ -87,7 +89,7 @@ class KdeConfig:
         if not (np.isfinite(self.threshold) and np.isfinite(self.displacement)):
             raise InputError("kde background thresholds", expected="numbers of nats",
                              got=f"{self.threshold:g} and {self.displacement:g}")  # fmt: skip
-        check_patience("kde background", self.patience)
+        check_patience("kde background", self.patience, self.rest)
         check_squares("kde background", self.closing, self.opening)
 
 
@@ -109,7 +111,10 @@ class KdeBackground:
         self._table, self._seen = kernel_table(), 0
         self._lattice = np.zeros((height, width), bool)
         self._lattice[::STRIDE, ::STRIDE] = True
-        self._gate, self._everything = Gate((height, width), self.config.patience), np.ones((height, width), bool)
+        self._gate, self._everything = (
+            Gate((height, width), self.config.patience, self.config.rest),
+            np.ones((height, width), bool),
+        )
 
     @classmethod
     def train(cls, pictures: Iterable[NDArray], config: KdeConfig | None = None) -> KdeBackground:
@@ -138,7 +143,7 @@ class KdeBackground:
         if self.config.radius:
             mask = self._without_displaced(picture, mask)
         mask = close_open(mask, self.config.closing, self.config.opening)
-        self._learn(picture, self._gate.learnt(mask))
+        self._learn(picture, self._gate.learnt(mask, picture))
         return mask
 
     def _density(self, picture: NDArray, enough: float = np.inf) -> NDArray:

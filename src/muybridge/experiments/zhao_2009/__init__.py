@@ -6,17 +6,20 @@ against our numbers.
 | module | what |
 |---|---|
 | `conditions` | how much is run, and what kinds of trials share |
+| `hall` | clips of a hall: nothing happens, the light goes, a door opens, somebody stays |
+| `subtraction`, `roc` | background models on them: one trial; ROC curves, tables, pictures |
 | `speed` | background models, frames a second |
 """
 
 from muybridge.experiments.experiment import Experiment
 from muybridge.experiments.zhao_2009.conditions import amount_of
+from muybridge.experiments.zhao_2009.roc import PICTURES, ROC
 from muybridge.experiments.zhao_2009.speed import SPEED
 
 EXPERIMENT = Experiment(
     "zhao-2009",
     "Zhao (2009), multi-part tracking in surveillance video",
-    (SPEED,),
+    (ROC, PICTURES, SPEED),
     scale=amount_of,
 )
 
