@@ -63,9 +63,9 @@ class Gate:
 
         if self._looked is None:
             self._looked = picture.copy()
-        apart = cv2.absdiff(picture, self._looked).reshape(picture.shape)
-        moved = apart[..., 0] > MOVED
-        for channel in range(1, apart.shape[2]):
+        apart = np.asarray(cv2.absdiff(picture, self._looked)).reshape(picture.shape)
+        moved: NDArray = apart[..., 0] > MOVED
+        for channel in range(1, picture.shape[2]):
             moved |= apart[..., channel] > MOVED
         self._looked[moved] = picture[moved]
         self._still += 1

@@ -72,7 +72,7 @@ class KdeConfig:
     """Pixels: how far a background pixel may have moved (their neighbourhood has a diameter of 5); 0 drops nothing."""
     patience: int = 3600
     """Pictures after which foreground is learnt; 0 learns everything at once."""
-    rest: int = 75
+    rest: int = 50
     """Pictures after which foreground that does not move is learnt; 0: not for that."""
     closing: int = 3
     """Pixels: as of the mixture model, whose mask is cleaned the same way."""

@@ -70,7 +70,7 @@ class SpatialConfig(ComponentsConfig):
     """Nats by which evenly spread colours explain a foreground pixel better, at least."""
     patience: int = 3600
     """Pictures after which foreground is learnt: two minutes at 30 Hz; 0 learns everything at once."""
-    rest: int = 75
+    rest: int = 50
     """Pictures after which foreground that does not move is learnt, as a door that was opened; 0: not for that."""
 
     def __post_init__(self) -> None:
