@@ -151,9 +151,11 @@ def report_of_rates(outcome: Outcome) -> Report:
     for k, (target, ax) in enumerate(zip(TARGETS, axes.ravel(), strict=True)):
         plot_rates(ax, {condition: curve[k] for condition, curve in curves.items()}, target.replace("_", "-"))
     columns = (Column("tracker"), *(Column(name, 0, percent=True) for name in TARGETS), Column("people", 0))
-    notes = (f"Share right in frames {FRAME - NEAR} to {FRAME + NEAR} after the start, of the people still there; "
-             "intervals over seeds.",
-             "Ours is not started at the truth: it counts from the first frame in which the parts are followed.")  # fmt: skip
+    notes = (
+        f"Share right in frames {FRAME - NEAR} to {FRAME + NEAR} after the start, of the people still there; intervals "
+        "over seeds.",
+        "Ours is not started at the truth: it counts from the first frame in which the parts are followed.",
+    )
     table = Table("tracking-rate", "Parts still right at frame 105 (Fig. 6.15)", columns, tuple(rows), notes)
     return Report((table,), {"tracking-rate": figure})
 
