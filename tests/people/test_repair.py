@@ -75,9 +75,7 @@ def test_a_part_that_was_thrown_away_is_found_again(index: int) -> None:
     """Its centre lies on the part again: within half of the true part's box."""
     parts, frame = started(), frame_of(0)
     others = [part.state for k, part in enumerate(parts.filters) if k != index]
-    parts.filters[index].state = replace(
-        parts.filters[index].state, estimate=np.array([5.0, 5, 4, 4, 0, 0])
-    )
+    parts.filters[index].state = replace(parts.filters[index].state, estimate=np.array([5.0, 5, 4, 4, 0, 0]))
     found = mended(parts.filters, index, body_of(0), frame, RULES.cut, RULES.colour)
     true = part_boxes(WALKER, 0)[index]
     assert (np.abs(found.box[:2] - states_from_boxes(true)[0, :2]) <= true[2:] / 2).all()

@@ -70,6 +70,27 @@ def test_parts_lie_on_the_body_in_their_order() -> None:
     assert (parts.scores[rows] > 0.5).all()
 
 
+def test_parts_of_the_hidden_one_of_two_learn_nothing() -> None:
+    """The nearer one hides the further one, not the other way round; what cannot be seen is not learnt (5.4.1)."""
+    tracker = PeopleTracker(Scene(EMPTY, known().ground, known().silhouette), SMALL, frame_rate=10.0, seed=0)
+    hidden: list[float] = []
+    for frame in range(40):
+        before = {
+            person: [part.target.histogram for part in person.parts.filters]
+            for person in tracker.people
+            if person.parts is not None
+        }
+        tracker.step(frame, *picture_of(CROSSING, frame, EMPTY))
+        for person, looks in before.items():
+            if person.parts is None:
+                continue
+            same = [np.array_equal(a, part.target.histogram) for a, part in zip(looks, person.parts.filters)]
+            assert all(same) if person.visible < 0.8 else not all(same)
+            if person.visible < 0.8:
+                hidden.append(person.body.box[1] + person.body.box[3] / 2)
+    assert len(hidden) >= 3 and max(hidden) < 166  # feet: 160 of the further one, 172 of the nearer
+
+
 def test_a_lone_walker_is_never_lost(monkeypatch: pytest.MonkeyPatch) -> None:
     """A hundred particles are few: unless some of them go on, velocities drift and the box with them (three of ten)."""
 

@@ -35,6 +35,11 @@ def tailed(distance):
 @kernel
 def squared_distance(colour, mean, variance):
     """Squared Mahalanobis distance of a colour (C,) to one component."""
+    if colour.shape[0] == 3:  # written out, the loop is a few instructions
+        blue = np.float32(colour[0]) - mean[0]
+        green = np.float32(colour[1]) - mean[1]
+        red = np.float32(colour[2]) - mean[2]
+        return blue * blue / variance[0] + green * green / variance[1] + red * red / variance[2]
     distance = _0
     for c in range(colour.shape[0]):
         off = np.float32(colour[c]) - mean[c]
@@ -65,18 +70,27 @@ def best_slot(colour, weight, mean, variance, limit):
 
 
 @kernel
-def background_slots(weight, variance, portion):
-    """Bits of the components that make up the background: the first by weight over deviation that hold `portion`."""
+def background_slots(weight, variance, portion, ranks):
+    """Bits of the components that make up the background: the first by weight over deviation that hold `portion`.
+
+    ranks : (K,) float32, written over: squared weights over summed variances
+    """
     bits = 0
     for k in range(weight.shape[0]):
-        if weight[k] == _0:
-            continue
-        rank, before = weight[k] * weight[k] / variance[k].sum(), _0
-        for j in range(weight.shape[0]):
-            if j != k and weight[j] * weight[j] > rank * variance[j].sum():
-                before += weight[j]
-        if before < portion:
-            bits |= 1 << k
+        ranks[k] = _0
+        if weight[k] > _0:
+            total = variance[k, 0]
+            for c in range(1, variance.shape[1]):
+                total += variance[k, c]
+            ranks[k] = weight[k] * weight[k] / total
+    for k in range(weight.shape[0]):
+        if weight[k] > _0:
+            before = _0
+            for j in range(weight.shape[0]):
+                if ranks[j] > ranks[k]:
+                    before += weight[j]
+            if before < portion:
+                bits |= 1 << k
     return bits
 
 
@@ -149,6 +163,7 @@ def _over_rows_scores(image, weights, means, variances, kept, out):
 def _over_rows_update(image, learnt, weights, means, variances, kept, numbers, matched, fresh, background):
     limit, rate, floor, wide, portion = numbers[0], numbers[1], numbers[2], numbers[3], numbers[4]
     for y in numba.prange(image.shape[0]):
+        ranks = np.empty(weights.shape[2], np.float32)
         for x in range(image.shape[1]):
             matched[y, x] = fresh[y, x] = -1
             background[y, x] = False
@@ -157,7 +172,7 @@ def _over_rows_update(image, learnt, weights, means, variances, kept, numbers, m
                 slot, new = learn_pixel(image[y, x], weight, mean, variance, limit, rate, floor, wide)
                 matched[y, x], fresh[y, x] = slot, new
                 background[y, x] = slot >= 0 and (kept[y, x] >> slot & 1) == 1
-                kept[y, x] = background_slots(weight, variance, portion)
+                kept[y, x] = background_slots(weight, variance, portion, ranks)
 
 
 def mixture_densities(image, weights, means, variances, kept, out):

@@ -40,35 +40,38 @@ def _joint(counts, first, second, across):
 
 
 @kernel
-def _partner_cost(partner, y, x, own, densities, counts, totals, offsets, limit):
-    """-log of P(c0, ci) = P(c0 | ci) P(ci), in which -log P(ci) is at most `limit`; 0 where nothing is known."""
+def _partner_density(partner, y, x, own, densities, counts, totals, offsets, least):
+    """P(c0, ci) = P(c0 | ci) P(ci), in which P(ci) is at least `least`; 1 where nothing is known."""
     d, across = partner >> 1, (partner & 1) == 1
     sign = -1 if across else 1
     qy, qx = y + sign * offsets[d, 0], x + sign * offsets[d, 1]
     py, px = (qy, qx) if across else (y, x)
     total = totals[d, py, px]
     if total <= _0:
-        return 0.0
+        return 1.0
     joint, alone = _joint(counts[d, py, px], own, densities[qy, qx], across)
-    excess = -math.log(max(alone / total, LEAST)) - limit
-    return -math.log(max(joint / total, LEAST)) - max(excess, 0.0)
+    rare = max(alone / total, LEAST)
+    return max(joint / total, LEAST) * (least / rare if rare < least else 1.0)
 
 
 @parallel_kernel
-def _over_rows_scores(weights, densities, counts, totals, offsets, partners, limit, out):
+def _over_rows_scores(weights, densities, counts, totals, offsets, partners, least, out):
     for row in numba.prange(out.shape[0]):
         y = np.int64(row)
         for x in range(out.shape[1]):
             alone = 0.0
             for k in range(weights.shape[2]):
                 alone += weights[y, x, k] * densities[y, x, k]
-            score = -math.log(max(alone, LEAST))
+            score, product = 0.0, max(alone, LEAST)
             for n in range(partners.shape[2]):
                 if partners[y, x, n] >= 0:
-                    score += _partner_cost(
-                        partners[y, x, n], y, x, densities[y, x], densities, counts, totals, offsets, limit
+                    product *= _partner_density(
+                        partners[y, x, n], y, x, densities[y, x], densities, counts, totals, offsets, least
                     )
-            out[y, x] = score
+                    if n % 4 == 3:  # so that a product of many stays above nought
+                        score -= math.log(product)
+                        product = 1.0
+            out[y, x] = score - math.log(product)
 
 
 @kernel
@@ -207,7 +210,7 @@ def pair_scores(weights, densities, counts, totals, offsets, partners, limit, ou
     limit : nats: the most that the partner's own colour may cost
     out : (H, W) float32, filled
     """
-    _over_rows_scores(weights, densities, counts, totals, offsets, partners, limit, out)
+    _over_rows_scores(weights, densities, counts, totals, offsets, partners, math.exp(-limit), out)
 
 
 def calm_scores(weights, kept, densities, calm, colours, scores):

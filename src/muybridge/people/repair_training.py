@@ -7,7 +7,7 @@ machine is moved until few of their good examples are called failures, and their
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol
 
@@ -39,12 +39,12 @@ class Progress(Protocol):
 class RepairTraining:
     """Settings."""
 
-    scenes: int = 5
-    held_out: int = 2  # of the scenes, to move the machines and to judge them
+    scenes: int = 3
+    held_out: int = 1  # of the scenes, to move the machines and to judge them
     duration_s: float = 16.0  # of a scene
     frame_rate: float = 25.0
     people: int = 4
-    spread: float = 0.2  # of the parts' colour likelihood, see `ColourConfig`
+    spreads: tuple[float, ...] = (0.2, 0.6)  # of the parts' colour likelihood: one that follows well, one that does not
     restart_s: float = 6.0  # after which everybody starts at the truth again
     every: int = 3  # frames from one example to the next
     good: float = 0.6  # share of a part's box that lies on the part: a good example from,
@@ -60,9 +60,9 @@ class RepairTraining:
             raise InputError(
                 "training", expected="1 <= held_out < scenes, failed < good in 0..1, every from 1", got=got
             )
-        positive = self.duration_s, self.frame_rate, self.spread, self.restart_s, self.penalty, self.kernel
-        if not (min(positive) > 0 and 0 <= self.false_alarms < 1):
-            raise InputError("training", expected="times, spread, penalty and kernel above 0, false_alarms in [0, 1)",
+        positive = self.duration_s, self.frame_rate, *self.spreads, self.restart_s, self.penalty, self.kernel
+        if not (self.spreads and min(positive) > 0 and 0 <= self.false_alarms < 1):
+            raise InputError("training", expected="times, spreads, penalty and kernel above 0, false_alarms in [0, 1)",
                              got=f"{positive}, {self.false_alarms}")  # fmt: skip
 
     def with_settings(self, settings: Sequence[str]) -> RepairTraining:
@@ -72,10 +72,11 @@ class RepairTraining:
             override(table, text)
         return replaced(self, table, "--set")
 
-    def rules(self, size: tuple[int, int]) -> PartRules:
-        """The thesis' tracker in pictures (width, height): parts go where their colours are."""
-        return PartRules(BoxMotion.within(size), CountConfig(), ColourConfig(spread=self.spread), PartConfig(),
-                         self.frame_rate, held=False)  # fmt: skip
+
+def thesis_rules(size: tuple[int, int], frame_rate: float, spread: float = ColourConfig().spread) -> PartRules:
+    """The thesis' tracker in pictures (width, height): parts go where their colours are, and nothing is repaired."""
+    colour = ColourConfig(spread=spread)
+    return PartRules(BoxMotion.within(size), CountConfig(), colour, PartConfig(), frame_rate, held=False)
 
 
 @dataclass(frozen=True, eq=False)
@@ -136,7 +137,7 @@ def learn(known: Examples, held_back: Examples, config: RepairTraining) -> tuple
 
 def examples_of_scene(seed: int, config: RepairTraining) -> Examples:
     """Render a scene without events and follow everybody in it."""
-    from muybridge.synthetic.crowd import PeopleShot, shoot_people
+    from muybridge.synthetic.crowd import shoot_people
     from muybridge.synthetic.scene import empty
     from muybridge.synthetic.surveillance import surveillance_scene
 
@@ -145,15 +146,14 @@ def examples_of_scene(seed: int, config: RepairTraining) -> Examples:
     )
     bare = np.median([pictures[0] for pictures in empty(scene, 15)], axis=0).astype(np.uint8)
 
-    def shots() -> Iterator[PeopleShot]:
-        for frame in range(scene.frame_count):
-            yield shoot_people(scene, frame)
-
+    shots = [shoot_people(scene, frame) for frame in range(scene.frame_count)]
     most = max(2, round(config.restart_s * config.frame_rate))
-    rng = np.random.default_rng([seed, 53])
-    return examples_of(
-        follow_labelled(rng, shots(), bare, config.rules(scene.rig[0].size), most=most, again=True), config
-    )
+    found = []
+    for number, spread in enumerate(config.spreads):
+        rules = thesis_rules(scene.rig[0].size, config.frame_rate, spread)
+        rng = np.random.default_rng([seed, 53, number])
+        found.append(examples_of(follow_labelled(rng, shots, bare, rules, most=most, again=True), config))
+    return Examples.joined(found)
 
 
 def examples_of(tracks: Sequence[LabelledTrack], config: RepairTraining) -> Examples:

@@ -1,8 +1,14 @@
-"""Which pixels a model may learn from a picture: what is background at once, what is foreground only after a while.
+"""Which pixels a model may learn from a picture: background at once, foreground where it is no person.
 
 A model that learns everything takes whoever stands still for background within seconds. One that learns background
-alone never takes in a chair that was moved. So foreground is learnt once it has been foreground for `patience` pictures
-in a row. Elgammal (2002) calls learning background alone a selective update.
+alone never takes in a door that was opened, nor that the lamps are off. So foreground is learnt where
+
+- more than `FLOOD` of the picture is foreground: the light has changed, and nobody is that large;
+- a whole component has not moved for `rest` pictures: a thing. Somebody who stands still sways and breathes, so that at
+  least `STIRRING` of the pixels of a person change within seconds;
+- a pixel has been foreground for `patience` pictures in a row, whatever it does.
+
+Elgammal (2002) calls learning background alone a selective update; the three exceptions are not in the papers.
 """
 
 from __future__ import annotations
@@ -12,32 +18,76 @@ from numpy.typing import NDArray
 
 from muybridge.errors import InputError
 
+FLOOD, SETTLE = 0.4, 15
+"""Share of the picture; and for how many more pictures everything is learnt, while exposure settles."""
+MOVED = 20
+"""Grey values, largest over the channels, from which on a pixel has changed; several deviations of usual noise."""
+STIRRING = 0.02
+
 
 class Gate:
-    """Counts for how many pictures each pixel has been foreground.
+    """Counts for how many pictures each pixel has been foreground, and for how many it has looked the same.
 
     Parameters
     ----------
     shape : (H, W)
     patience : int
         Pictures; with 0 everything is learnt.
+    rest : int
+        Pictures after which what does not move is learnt; with 0 nothing is for that.
     """
 
-    def __init__(self, shape: tuple[int, int], patience: int) -> None:
-        self.patience = patience
+    def __init__(self, shape: tuple[int, int], patience: int, rest: int = 0) -> None:
+        self.patience, self.rest = patience, rest
         self._age = np.zeros(shape, np.int32)
+        self._still = np.zeros(shape, np.int32)
+        self._looked: NDArray | None = None
+        self._settling = 0
         self._everything = np.ones(shape, bool)
 
-    def learnt(self, foreground: NDArray) -> NDArray:
-        """(H, W) bool: what may be learnt of the picture with this foreground (H, W) bool."""
+    def learnt(self, foreground: NDArray, picture: NDArray) -> NDArray:
+        """(H, W) bool: what may be learnt of a picture (H, W, C) uint8 with this foreground (H, W) bool."""
         if self.patience == 0:
             return self._everything
         self._age += 1
         self._age *= foreground
-        return (self._age == 0) | (self._age > self.patience)
+        self._watch(picture)
+        self._settling = SETTLE if foreground.mean() > FLOOD else self._settling - 1
+        if self._settling > 0:
+            return self._everything
+        return ~foreground | (self._age > self.patience) | self._things(foreground)
+
+    def _watch(self, picture: NDArray) -> None:
+        """Count for how many pictures each pixel has looked as it did when the count began."""
+        import cv2
+
+        if self._looked is None:
+            self._looked = picture.copy()
+        apart = np.asarray(cv2.absdiff(picture, self._looked)).reshape(picture.shape)
+        moved: NDArray = apart[..., 0] > MOVED
+        for channel in range(1, picture.shape[2]):
+            moved |= apart[..., channel] > MOVED
+        self._looked[moved] = picture[moved]
+        self._still += 1
+        self._still[moved] = 0
+
+    def _things(self, foreground: NDArray) -> NDArray:
+        """(H, W) bool: components of which next to nothing has moved for `rest` pictures."""
+        import cv2
+
+        if not self.rest:
+            return np.zeros_like(foreground)
+        count, label = cv2.connectedComponents(foreground.view(np.uint8), connectivity=8)
+        pixels = np.bincount(label.ravel(), minlength=count)
+        moved = np.bincount(label[self._still < self.rest], minlength=count)
+        thing = moved <= STIRRING * pixels
+        thing[0] = False
+        return thing[label]
 
 
-def check_patience(what: str, patience: int) -> None:
-    """Raise where it is no number of pictures."""
+def check_patience(what: str, patience: int, rest: int = 0) -> None:
+    """Raise where they are no numbers of pictures."""
     if patience < 0:
         raise InputError(f"{what} patience", expected="0 pictures (learn everything) or more", got=str(patience))
+    if rest < 0:
+        raise InputError(f"{what} rest", expected="0 pictures (no thing is learnt for resting) or more", got=str(rest))

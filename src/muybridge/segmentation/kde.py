@@ -23,7 +23,7 @@ back and their differences are still those between consecutive pictures; medians
 interpolated; kernels fall slower than a normal density beyond four widths. Colours are B, G, R, not chromaticities:
 shadows are left to `muybridge.segmentation.shadows`. There is one model, updated selectively (their short-term model)
 with a patience after which foreground is learnt too, where they intersect it with a second one that learns
-everything.
+everything. A large component is asked at one pixel in sixteen whether it has moved.
 
 Cost: O(N) a pixel, less where a few samples already decide.
 """
@@ -52,6 +52,8 @@ from muybridge.segmentation.pictures import check_same_shape, learn_each
 REFRESH = 32
 """Pictures in which the bandwidths of all rows are measured again, some rows at each."""
 MOST_SAMPLES = 255
+LARGE, STRIDE = 200, 4
+"""Pixels from which on a component is asked at every fourth pixel of every fourth row whether it has moved."""
 
 
 @dataclass(frozen=True)
@@ -70,6 +72,8 @@ class KdeConfig:
     """Pixels: how far a background pixel may have moved (their neighbourhood has a diameter of 5); 0 drops nothing."""
     patience: int = 3600
     """Pictures after which foreground is learnt; 0 learns everything at once."""
+    rest: int = 50
+    """Pictures after which foreground that does not move is learnt; 0: not for that."""
     closing: int = 3
     """Pixels: as of the mixture model, whose mask is cleaned the same way."""
     opening: int = 5
@@ -85,7 +89,7 @@ class KdeConfig:
         if not (np.isfinite(self.threshold) and np.isfinite(self.displacement)):
             raise InputError("kde background thresholds", expected="numbers of nats",
                              got=f"{self.threshold:g} and {self.displacement:g}")  # fmt: skip
-        check_patience("kde background", self.patience)
+        check_patience("kde background", self.patience, self.rest)
         check_squares("kde background", self.closing, self.opening)
 
 
@@ -105,7 +109,12 @@ class KdeBackground:
         self.counts, self._heads = np.zeros((height, width), np.uint8), np.zeros((height, width), np.uint8)
         self.levels = np.zeros((height, width, channels), np.uint8)
         self._table, self._seen = kernel_table(), 0
-        self._gate, self._everything = Gate((height, width), self.config.patience), np.ones((height, width), bool)
+        self._lattice = np.zeros((height, width), bool)
+        self._lattice[::STRIDE, ::STRIDE] = True
+        self._gate, self._everything = (
+            Gate((height, width), self.config.patience, self.config.rest),
+            np.ones((height, width), bool),
+        )
 
     @classmethod
     def train(cls, pictures: Iterable[NDArray], config: KdeConfig | None = None) -> KdeBackground:
@@ -134,7 +143,7 @@ class KdeBackground:
         if self.config.radius:
             mask = self._without_displaced(picture, mask)
         mask = close_open(mask, self.config.closing, self.config.opening)
-        self._learn(picture, self._gate.learnt(mask))
+        self._learn(picture, self._gate.learnt(mask, picture))
         return mask
 
     def _density(self, picture: NDArray, enough: float = np.inf) -> NDArray:
@@ -146,14 +155,15 @@ class KdeBackground:
         """The mask without pixels, and components, whose colours are at home beside them."""
         import cv2
 
+        count, label, stats, _ = cv2.connectedComponentsWithStats(mask.view(np.uint8), connectivity=8)
+        asked = mask & ((stats[:, cv2.CC_STAT_AREA] < LARGE)[label] | self._lattice)
         beside = np.empty(mask.shape, np.float32)
         displaced_density(
-            picture, mask, self.samples, self.counts, self.levels, self._table, self.config.radius, beside
+            picture, asked, self.samples, self.counts, self.levels, self._table, self.config.radius, beside
         )
-        gain = np.where(mask, np.log(np.maximum(beside, np.float32(LEAST))), 0.0)
-        count, label = cv2.connectedComponents(mask.view(np.uint8), connectivity=8)
+        gain = np.where(asked, np.log(np.maximum(beside, np.float32(LEAST))), 0.0)
         whole = np.bincount(label.ravel(), weights=gain.ravel(), minlength=count)
-        return mask & ~((gain > -self.config.displacement) & (whole > 0)[label])
+        return mask & ~((~asked | (gain > -self.config.displacement)) & (whole > 0)[label])
 
     def _learn(self, picture: NDArray, learnt: NDArray) -> None:
         """Take the picture where its turn has come: two in a row, then none for a while; the first N all."""

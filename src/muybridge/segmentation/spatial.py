@@ -70,6 +70,8 @@ class SpatialConfig(ComponentsConfig):
     """Nats by which evenly spread colours explain a foreground pixel better, at least."""
     patience: int = 3600
     """Pictures after which foreground is learnt: two minutes at 30 Hz; 0 learns everything at once."""
+    rest: int = 50
+    """Pictures after which foreground that does not move is learnt, as a door that was opened; 0: not for that."""
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -82,7 +84,7 @@ class SpatialConfig(ComponentsConfig):
             raise InputError(f"{what} partner_limit", expected="a number of nats", got=f"{self.partner_limit:g}")
         if not np.isfinite(self.threshold):
             raise InputError(f"{what} threshold", expected="a number of nats", got=f"{self.threshold:g}")
-        check_patience(what, self.patience)
+        check_patience(what, self.patience, self.rest)
 
 
 class SpatialBackground:
@@ -104,7 +106,10 @@ class SpatialBackground:
         self.totals = np.zeros((len(OFFSETS), height, width), np.float32)
         self.partners = np.full((height, width, self.config.partners), -1, np.int8)
         self._information = np.zeros((len(OFFSETS), height, width), np.float32)
-        self._gate, self._everything = Gate((height, width), self.config.patience), np.ones((height, width), bool)
+        self._gate, self._everything = (
+            Gate((height, width), self.config.patience, self.config.rest),
+            np.ones((height, width), bool),
+        )
         choose_partners(self.counts, OFFSETS, 0, 1, self._information, self.partners)
 
     @classmethod
@@ -129,7 +134,7 @@ class SpatialBackground:
         """Foreground (H, W) bool; learns the background of the picture."""
         picture = self._checked(image)
         mask = close_open(self._score(picture) > self.config.threshold, self.config.closing, self.config.opening)
-        self._learn(picture, self._gate.learnt(mask))
+        self._learn(picture, self._gate.learnt(mask, picture))
         return mask
 
     def _score(self, picture: NDArray) -> NDArray:

@@ -6,8 +6,10 @@ against our numbers.
 | module | what |
 |---|---|
 | `conditions` | how much is run, and what kinds of trials share |
+| `hall` | clips of a hall: nothing happens, the light goes, a door opens, somebody stays |
+| `subtraction`, `roc` | background models on them: one trial; ROC curves, tables, pictures |
 | `speed` | background models, frames a second |
-| `hall` | rendered clips, and the trials that look at them |
+| `people_clips` | rendered clips, and the trials that look at them |
 | `tracking` | one box a person by colour, against Nummiaro's: Tables 1 to 4 |
 | `parts` | parts with and without repair: Fig. 6.15; boxes mistaken for parts |
 """
@@ -15,13 +17,14 @@ against our numbers.
 from muybridge.experiments.experiment import Experiment
 from muybridge.experiments.zhao_2009.conditions import amount_of
 from muybridge.experiments.zhao_2009.parts import ALARMS, RATES
+from muybridge.experiments.zhao_2009.roc import PICTURES, ROC
 from muybridge.experiments.zhao_2009.speed import SPEED
 from muybridge.experiments.zhao_2009.tracking import BOXES
 
 EXPERIMENT = Experiment(
     "zhao-2009",
     "Zhao (2009), multi-part tracking in surveillance video",
-    (SPEED, BOXES, ALARMS, RATES),
+    (ROC, PICTURES, SPEED, BOXES, ALARMS, RATES),
     scale=amount_of,
 )
 

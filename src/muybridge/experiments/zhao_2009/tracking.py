@@ -16,7 +16,7 @@ import numpy as np
 from muybridge.experiments.experiment import Amount, Case, Outcome, Part, Report
 from muybridge.experiments.statistics import over_seeds
 from muybridge.experiments.tables import Cell, Column, Table
-from muybridge.experiments.zhao_2009.hall import HallPictures, HallTrial, halls
+from muybridge.experiments.zhao_2009.people_clips import ClipPictures, PeopleTrial, people_clips
 from muybridge.filters import condensation
 from muybridge.people.box import PRINTED_VARIANCES, BoxMotion, states_from_boxes
 from muybridge.people.colour_likelihood import ColourTarget
@@ -54,14 +54,14 @@ class _Followed:
 
 
 @dataclass(frozen=True)
-class BoxTrial(HallTrial):
+class BoxTrial(PeopleTrial):
     """One method with so many particles."""
 
     RESULT: ClassVar[type[Any]] = BoxResult
     method: str = "ours"
     particles: int = 600
 
-    def measure(self, pictures: HallPictures) -> BoxResult:
+    def measure(self, pictures: ClipPictures) -> BoxResult:
         """Follow everybody."""
         rng = np.random.default_rng([self.clip.seed, self.particles])
         ours = self.method == "ours"
@@ -98,7 +98,7 @@ class BoxTrial(HallTrial):
 def cases(scale: Amount) -> Iterator[Case]:
     """Both methods, every number of particles, one clip a seed."""
     counts = PARTICLES[::3] if scale.quick else PARTICLES
-    for clip in halls(scale.seeds):
+    for clip in people_clips(scale.seeds):
         for method in METHODS:
             for count in counts:
                 yield Case(f"{method}, {count}", BoxTrial(clip, method, count), count)

@@ -1,0 +1,137 @@
+"""Rendered clips of a hall and the trials that look at them: pictures, who is where, the scene without people."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, fields
+from pathlib import Path
+from typing import Any, ClassVar
+
+import numpy as np
+
+from muybridge.experiments.zhao_2009.conditions import description_of, digest_of
+from muybridge.io.disk import make_folder
+from muybridge.synthetic.crowd import PeopleShot
+
+VERSION = 1  # raise it when a clip of the same description is another
+CLIPS = "clips"
+EMPTY_PICTURES = 15
+COLUMNS = ("image", "ids", "numbers", "boxes", "visible", "parts", "parts_visible")
+
+
+@dataclass(frozen=True, eq=False)
+class ClipPictures:
+    """empty : (H, W, 3) uint8 BGR, the median of pictures without people; shots : T frames."""
+
+    empty: np.ndarray
+    shots: tuple[PeopleShot, ...]
+
+
+@dataclass(frozen=True)
+class PeopleClip:
+    """A clip of `synthetic.surveillance_scene` at the picture size of the thesis' second set."""
+
+    seed: int = 0
+    duration: float = 14.0  # seconds
+    rate: float = 25.0
+    people: int = 4
+    size: tuple[int, int] = (384, 288)
+    events: tuple[str, ...] = ()
+
+    @property
+    def scene(self) -> str:
+        """All but the seed."""
+        return f"{self.people} people, {self.duration:g} s, {'+'.join(self.events) or 'calm'}"
+
+    def path(self, folder: Path) -> Path:
+        """Where its pictures lie."""
+        return folder / CLIPS / f"{digest_of(description_of(self, VERSION))}.npz"
+
+    def prepare(self, folder: Path, trials: Sequence[Any]) -> None:
+        """Render it, unless it is there."""
+        path = self.path(folder)
+        if path.exists():
+            return
+        make_folder(path.parent)
+        pictures = self.render()
+        columns = {f"{name}{t}": getattr(shot, name) for t, shot in enumerate(pictures.shots) for name in COLUMNS}
+        unfinished = path.with_suffix(".unfinished.npz")
+        np.savez(unfinished, empty=pictures.empty, **columns)
+        unfinished.replace(path)
+
+    def drop(self, folder: Path) -> None:
+        """The pictures can be rendered again."""
+        self.path(folder).unlink(missing_ok=True)
+
+    def load(self, folder: Path) -> ClipPictures:
+        """What `prepare` left."""
+        with np.load(self.path(folder), allow_pickle=False) as stored:
+            count = sum(name.startswith("ids") for name in stored.files)
+            shots = tuple(PeopleShot(**{name: stored[f"{name}{t}"] for name in COLUMNS}) for t in range(count))
+            return ClipPictures(stored["empty"], shots)
+
+    def render(self) -> ClipPictures:
+        """The whole clip, in memory."""
+        from muybridge.synthetic.crowd import shoot_people
+        from muybridge.synthetic.scene import empty
+        from muybridge.synthetic.surveillance import surveillance_scene
+
+        scene = surveillance_scene(seed=self.seed, duration=self.duration, rate=self.rate, people=self.people,
+                                   size=self.size, events=self.events)  # fmt: skip
+        bare = np.median([pictures[0] for pictures in empty(scene, EMPTY_PICTURES)], axis=0).astype(np.uint8)
+        return ClipPictures(bare, tuple(shoot_people(scene, t) for t in range(scene.frame_count)))
+
+
+@dataclass(frozen=True)
+class PeopleTrial:
+    """What trials on such clips share; a kind of trial says what is measured, and as what it is kept."""
+
+    RESULT: ClassVar[type[Any]]
+    REVISION: ClassVar[int] = 1  # raise it when the measurement changes
+    clip: PeopleClip
+
+    @property
+    def description(self) -> dict[str, Any]:
+        """See `RunnableTrial`."""
+        return description_of(self, self.REVISION)
+
+    @property
+    def digest(self) -> str:
+        """See `RunnableTrial`."""
+        return digest_of(self.description)
+
+    @property
+    def kernels(self) -> str:
+        """One kind of trial runs one set of kernels."""
+        return type(self).__name__
+
+    def rehearse(self, folder: Path) -> None:
+        """Half a second of a small hall."""
+        from dataclasses import replace
+
+        short = PeopleClip(seed=1, duration=2.0, rate=10.0, people=1, size=(160, 120))
+        replace(self, clip=short).measure(short.render())
+
+    def run(self, folder: Path) -> Any:
+        """See `RunnableTrial`."""
+        return self.measure(self.clip.load(folder))
+
+    def measure(self, pictures: ClipPictures) -> Any:
+        """The result."""
+        raise NotImplementedError
+
+    def result(self, values: Mapping[str, Any]) -> Any:
+        """From `asdict` by way of JSON."""
+        return self.RESULT(**{field.name: _tuples(values[field.name]) for field in fields(self.RESULT)})
+
+
+def people_clips(seeds: int, first: int = 0, **settings: Any) -> Iterator[PeopleClip]:
+    """One clip a seed."""
+    for seed in range(first, first + seeds):
+        yield PeopleClip(seed, **settings)
+
+
+def _tuples(value: Any) -> Any:
+    if value is None:
+        return float("nan")
+    return tuple(_tuples(item) for item in value) if isinstance(value, list) else value
