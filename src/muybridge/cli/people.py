@@ -40,8 +40,8 @@ def people(
     Parameters
     ----------
     video
-        A video, a folder of numbered pictures, or a pattern such as 'frame%04d.jpg'; or a camera, as it runs: the number
-        of a webcam, or an address such as rtsp://HOST/PATH or http://HOST/PATH.
+        A video, a folder of numbered pictures, or a pattern such as 'frame%04d.jpg'; or a camera as it runs: a webcam's
+        number, or an address such as rtsp://HOST/PATH.
     out
         Where tracks.txt, parts.csv, run.json and people.mp4 go; runs/NAME where absent.
     truth
@@ -129,10 +129,8 @@ def _watch(
         except KeyboardInterrupt:
             raise KeyboardInterrupt(f"interrupted; what was finished is kept in {out}") from None
     facts = stream.facts()
-    reporting.say(
-        f"{summary.frames} frames, {facts['dropped']} dropped, {facts['reconnects']} reconnects, {summary.people} people; "
-        f"{facts['ended']}"
-    )
+    lost = f"{facts['dropped']} dropped, {facts['reconnects']} reconnects"
+    reporting.say(f"{summary.frames} frames, {lost}, {summary.people} people; {facts['ended']}")
     scores = {} if truth is None else _score(out, truth, reporting)
     reporting.say(f"results in {out}")
     reporting.finish({"out": out, **asdict(summary), "stream": facts, **scores})

@@ -7,6 +7,7 @@ bounded number of times in a row, after waits that double.
 
 from __future__ import annotations
 
+import re
 import threading
 import time
 from collections import deque
@@ -48,6 +49,17 @@ def is_live(address: str) -> bool:
     return ("://" in address or address.isdigit()) and not Path(address).exists()
 
 
+def without_password(address: str) -> str:
+    """The address without who logs in to it, for messages and logs.
+
+    Examples
+    --------
+    >>> without_password("rtsp://me:secret@camera/1")
+    'rtsp://camera/1'
+    """
+    return re.sub(r"//[^/@]*@", "//", address)
+
+
 class LiveSource:
     """Pictures (H, W, 3) uint8 BGR of a camera, the latest first to be given up.
 
@@ -73,8 +85,10 @@ class LiveSource:
         prepare: Callable[[Picture], Picture] | None = None,
         connect: Callable[[str, float], Iterator[Picture]] | None = None,
     ) -> None:
-        self.name, self.config = address, config or LiveConfig()
-        self.size, self.frame_rate = (0, 0), None
+        self.name, self.config = without_password(address), config or LiveConfig()
+        self._address = address
+        self.size: tuple[int, int] = (0, 0)
+        self.frame_rate: float | None = None
         self.received = self.dropped = self.repeated = self.reconnects = 0
         self.ended = ""
         self._prepare, self._connect = prepare, connect or connected
@@ -132,7 +146,7 @@ class LiveSource:
         import av
 
         try:
-            for picture in self._connect(self.name, self.config.stall_s):
+            for picture in self._connect(self._address, self.config.stall_s):
                 self._offer(time.monotonic() - begun, self._checked(picture))
                 if self._stop.is_set():
                     break
@@ -225,23 +239,21 @@ def _stream(address: str, stall_s: float) -> Iterator[Picture]:
         container = av.open(address, timeout=(stall_s, stall_s), options=OPTIONS)
     except (av.FFmpegError, OSError) as error:
         reason = getattr(error, "strerror", None) or str(error)
-        raise InputError(address, expected="a stream that FFmpeg opens", got=reason) from error
+        what = without_password(address)
+        raise InputError(what, expected="a stream that FFmpeg opens", got=reason) from error
     with container:
         if not container.streams.video:
-            raise InputError(address, expected="a stream of pictures", got="none")
+            raise InputError(without_password(address), expected="a stream of pictures", got="none")
         for packet in container.demux(container.streams.video[0]):
             try:
                 frames = packet.decode()
             except av.FFmpegError:
                 continue  # a broken packet costs its picture, not the stream
             for frame in frames:
-                yield frame.to_ndarray(format="bgr24")
+                yield np.asarray(frame.to_ndarray(format="bgr24"), dtype=np.uint8)
 
 
-def _colour(picture: Picture) -> Picture:
-    """(H, W, 3) of a grey or four-channel picture."""
-    import cv2
-
-    if picture.ndim == 2:
-        return np.asarray(cv2.cvtColor(picture, cv2.COLOR_GRAY2BGR), dtype=np.uint8)
-    return np.ascontiguousarray(picture[..., :3])
+def _colour(picture: Any) -> Picture:
+    """(H, W, 3) uint8 of a grey or four-channel picture."""
+    picture = np.atleast_3d(np.asarray(picture, dtype=np.uint8))
+    return np.ascontiguousarray(np.repeat(picture, 3, axis=2) if picture.shape[2] == 1 else picture[..., :3])

@@ -55,7 +55,11 @@ class Stream(Protocol):
 
     name: str
     size: tuple[int, int]
-    frame_rate: float | None
+
+    @property
+    def frame_rate(self) -> float | None:
+        """Frames per second; None where only the pictures tell."""
+        ...
 
     def frames(self) -> Iterator[tuple[int, float, Picture]]:
         """Yield (number, seconds, picture); numbers rise, with gaps where pictures were dropped."""
