@@ -18,6 +18,7 @@ from muybridge.people.blobs import Mask
 Picture = NDArray[np.uint8]
 WIDTH = 160  # pixels to which pictures are reduced to find a shift
 SURE = 0.15  # response of the phase correlation, 0..1: below, the pictures do not match at all
+BETTER = 0.05  # by which the correlation of grey values must rise where the pictures are shifted, and a light cannot
 DARK = 20  # grey values: darker places of the empty scene say nothing about the light
 
 
@@ -68,9 +69,13 @@ class SceneWatch:
         """(x, y) pixels by which the scene lies further right and down than it did; 0 where nothing matches."""
         import cv2
 
-        (x, y), response = cv2.phaseCorrelate(self._plate, _reduced(picture), self._window)
+        small = _reduced(picture)
+        # It multiplies what it is given by the window, in place.
+        (x, y), response = cv2.phaseCorrelate(self._plate.copy(), small.copy(), self._window)
+        if response < SURE or _alike(self._plate, small, round(x), round(y)) < _alike(self._plate, small, 0, 0) + BETTER:
+            return 0.0, 0.0
         scale = picture.shape[1] / self._plate.shape[1]
-        return (x * scale, y * scale) if response > SURE else (0.0, 0.0)
+        return x * scale, y * scale
 
     def gains(self, picture: Picture) -> NDArray[np.float64]:
         """(3,) how much brighter each channel is than in the empty scene, where most of it is seen."""
@@ -79,6 +84,17 @@ class SceneWatch:
             return np.ones(3)
         ratio: NDArray[np.float64] = np.median(picture[bright] / self.empty[bright].astype(np.float64), axis=0)
         return ratio
+
+
+def _alike(plate: NDArray[np.float32], picture: NDArray[np.float32], x: int, y: int) -> float:
+    """Correlation of the two (h, w) where they overlap, the plate moved right and down by (x, y); light cancels out."""
+    height, width = plate.shape
+    if abs(x) > width // 2 or abs(y) > height // 2:
+        return -1.0
+    one = plate[max(0, -y) : height - max(0, y), max(0, -x) : width - max(0, x)]
+    other = picture[max(0, y) : height - max(0, -y), max(0, x) : width - max(0, -x)]
+    deviations = float(one.std()) * float(other.std())
+    return float(((one - one.mean()) * (other - other.mean())).mean()) / deviations if deviations > 0 else 0.0
 
 
 def _reduced(picture: Picture) -> NDArray[np.float32]:
