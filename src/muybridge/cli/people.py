@@ -2,19 +2,25 @@
 
 from __future__ import annotations
 
+import re
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from muybridge.cli.reporting import DEFAULT_REPORTING, Reporting
+from muybridge.cli.reporting import DEFAULT_REPORTING, Reporting, Switch
 from muybridge.cli.track import Overrides
+from muybridge.errors import InputError
 
 if TYPE_CHECKING:
     from muybridge.io.boxes import BoxSeries
+    from muybridge.people.blobs import Mask
+    from muybridge.people.run import PeopleConfig
 
 
 def people(
-    video: Path,
+    video: str,
     /,
     *,
     out: Path | None = None,
@@ -24,6 +30,9 @@ def people(
     occluders: Path | None = None,
     set_: Overrides = None,
     overlay: bool = True,
+    live: Switch = False,
+    seconds: float | None = None,
+    show: Switch = False,
     reporting: Reporting = DEFAULT_REPORTING,
 ) -> None:
     """Follow several people before one fixed colour camera: who walked where, part by part.
@@ -31,7 +40,8 @@ def people(
     Parameters
     ----------
     video
-        A video, a folder of numbered pictures, or a pattern such as 'frame%04d.jpg'.
+        A video, a folder of numbered pictures, or a pattern such as 'frame%04d.jpg'; or a camera as it runs: a webcam's
+        number, or an address such as rtsp://HOST/PATH.
     out
         Where tracks.txt, parts.csv, run.json and people.mp4 go; runs/NAME where absent.
     truth
@@ -45,9 +55,16 @@ def people(
     set_
         One setting, KEY=VALUE, such as tracker.smallest=60; may be repeated.
     overlay
-        Draw the tracks over the pictures.
+        Draw the tracks over the pictures; of a camera there are none left to draw on.
+    live
+        Treat a video or pictures as a camera: learn the scene on the way, and keep nothing.
+    seconds
+        Of a camera: stop after so many.
+    show
+        Of a camera: a window with what is seen; needs an OpenCV that has windows.
     """
     from muybridge.io.boxes import read_boxes
+    from muybridge.io.live import is_live
     from muybridge.io.video import open_pictures
     from muybridge.people.run import PeopleConfig, run
 
@@ -56,10 +73,15 @@ def people(
     if true_boxes is not None:
         _check_scorer()
     hidden = None if occluders is None else _white(occluders)
-    out = out or Path("runs") / video.stem.strip("%*?.") or Path("runs/people")
+    out = out or Path("runs") / (_stem(video) or "people")
+    if live or is_live(video):
+        return _watch(video, out, config, seed, frame_rate, seconds, hidden, true_boxes, show, reporting)
+    for name, asked in (("--seconds", seconds is not None), ("--show", show)):
+        if asked:
+            raise InputError(name, expected="a camera, or --live", got=video)
     try:
         with open_pictures(video, frame_rate) as pictures:
-            with reporting.progress(f"people in {video.name}") as progress:
+            with reporting.progress(f"people in {Path(video).name}") as progress:
                 summary = run(pictures, out, config, seed=seed, occluders=hidden, progress=progress)
             reporting.say(f"{summary.frames} frames, {summary.people} people, {summary.frames_per_second:.1f} frames/s")
             drawn = _draw(out, pictures, reporting) if overlay else None
@@ -68,6 +90,81 @@ def people(
     scores = {} if true_boxes is None else _score(out, true_boxes, reporting)
     reporting.say(f"results in {out}")
     reporting.finish({"out": out, **asdict(summary), "overlay": drawn, **scores})
+
+
+def _watch(
+    video: str,
+    out: Path,
+    config: PeopleConfig,
+    seed: int,
+    frame_rate: float | None,
+    seconds: float | None,
+    hidden: Mask | None,
+    truth: BoxSeries | None,
+    show: bool,
+    reporting: Reporting,
+) -> None:
+    """Follow people before a camera as it runs."""
+    from contextlib import ExitStack
+
+    from muybridge.io.live import LiveSource, PlayedBack, is_live
+    from muybridge.io.video import open_pictures
+    from muybridge.people.live import run_live
+    from muybridge.segmentation.pictures import reduce_image
+
+    def prepare(picture: Any) -> Any:
+        return reduce_image(picture, min(1.0, config.rows / picture.shape[0]))
+
+    with ExitStack() as opened:
+        stream: LiveSource | PlayedBack
+        if is_live(video):
+            stream = LiveSource(video, config.stream, prepare=prepare)
+        else:
+            stream = PlayedBack(opened.enter_context(open_pictures(video, frame_rate)), prepare)
+        window = opened.enter_context(_window(video)) if show else None
+        progress = opened.enter_context(reporting.progress(f"people in {stream.name}"))
+        try:
+            summary = run_live(stream, out, config, seed=seed, seconds=seconds, occluders=hidden, progress=progress,
+                               watcher=window)  # fmt: skip
+        except KeyboardInterrupt:
+            raise KeyboardInterrupt(f"interrupted; what was finished is kept in {out}") from None
+    facts = stream.facts()
+    lost = f"{facts['dropped']} dropped, {facts['reconnects']} reconnects"
+    reporting.say(f"{summary.frames} frames, {lost}, {summary.people} people; {facts['ended']}")
+    scores = {} if truth is None else _score(out, truth, reporting)
+    reporting.say(f"results in {out}")
+    reporting.finish({"out": out, **asdict(summary), "stream": facts, **scores})
+
+
+@contextmanager
+def _window(name: str) -> Iterator[Callable[[Any, BoxSeries], None]]:
+    """A window in which pictures are shown with boxes; one clear line where this OpenCV has none."""
+    import cv2
+
+    from muybridge.plotting.people_video import draw_people
+
+    try:
+        cv2.namedWindow(name)
+    except cv2.error:
+        remedy = "leave it out, or install opencv-python in place of opencv-python-headless"
+        raise InputError("--show", expected="an OpenCV with windows", got="a headless one", remedy=remedy) from None
+
+    def show(picture: Any, boxes: BoxSeries) -> None:
+        frame = int(boxes.frames[0]) if len(boxes) else 0
+        cv2.imshow(name, draw_people(picture, frame, boxes))
+        cv2.waitKey(1)
+
+    try:
+        yield show
+    finally:
+        cv2.destroyWindow(name)
+
+
+def _stem(video: str) -> str:
+    """What a run is named after: a file's name, or an address's letters and digits."""
+    if "://" in video:
+        return "-".join(part for part in re.split(r"[^A-Za-z0-9]+", video.split("://", 1)[1].split("@")[-1]) if part)
+    return f"camera{video}" if video.isdigit() else Path(video).stem.strip("%*?.")
 
 
 def _draw(out: Path, pictures: Any, reporting: Reporting) -> Path:

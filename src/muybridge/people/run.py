@@ -21,6 +21,7 @@ import numpy as np
 from muybridge.errors import InputError
 from muybridge.io._tables import override, replaced, unknown
 from muybridge.io.disk import make_folder
+from muybridge.io.live import LiveConfig
 from muybridge.io.mot import write_mot
 from muybridge.io.parts import write_parts
 from muybridge.io.prefetch import prefetched
@@ -29,13 +30,16 @@ from muybridge.io.run_folder import write_summary
 from muybridge.io.video import PictureSource
 from muybridge.people.blobs import BlobConfig, Mask
 from muybridge.people.failure import detector_named
+from muybridge.people.learning import LearningConfig
 from muybridge.people.masks import MaskConfig, Masks
 from muybridge.people.scene import Scene, describe
 from muybridge.people.tracker import PeopleTracker, TrackerConfig
 from muybridge.people.tracks import Tracks
+from muybridge.people.watch import WatchConfig
 from muybridge.segmentation.pictures import reduce_image
 
 TRACKS_FILE, PARTS_FILE = "tracks.txt", "parts.csv"
+SMALLEST_SIDE = 32  # pixels: a picture with a shorter side shows nobody
 READ_AHEAD = 4  # frames decoded beside the tracking
 Config = TypeVar("Config")
 
@@ -43,7 +47,7 @@ Config = TypeVar("Config")
 class Progress(Protocol):
     """Told how many of how many frames are done."""
 
-    def __call__(self, done: int, total: int, message: str = "") -> None: ...
+    def __call__(self, done: int, total: int | None, message: str = "") -> None: ...
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -56,6 +60,9 @@ class PeopleConfig:
     rows: int = 720  # pictures with more are worked on reduced to so many
     moments: int = 200  # of the clip that are looked at beforehand
     plate_moments: int = 60  # of those, for the median that is the empty scene
+    stream: LiveConfig = LiveConfig()  # how a stream is read,
+    learning: LearningConfig = LearningConfig()  # when its scene is learnt,
+    watch: WatchConfig = WatchConfig()  # and when it counts as changed
 
     def __post_init__(self) -> None:
         if self.rows < 60 or self.plate_moments < 1 or self.moments < 1:
@@ -98,8 +105,11 @@ def run(
     occluders : (H, W) bool, optional
         What hides people, in the pictures' own pixels, beside what is found to.
     """
-    config, progress = config or PeopleConfig(), progress or _ignore
+    config, progress = config or PeopleConfig(), progress or ignore
     detector = detector_named(config.repair)
+    if min(pictures.size) < SMALLEST_SIDE:
+        raise InputError(pictures.name, expected=f"pictures of at least {SMALLEST_SIDE} x {SMALLEST_SIDE} pixels",
+                         got=f"{pictures.size[0]} x {pictures.size[1]}")  # fmt: skip
     make_folder(out)
     factor = min(1.0, config.rows / pictures.size[1])
     masks, scene = look_over(pictures, config, factor, occluders, progress)
@@ -134,7 +144,7 @@ def look_over(
     progress: Progress | None = None,
 ) -> tuple[Masks, Scene]:
     """The empty scene and what the clip says of where people walk, from moments spread over it."""
-    progress = progress or _ignore
+    progress = progress or ignore
     moments = _spread(len(pictures), config.moments)
     chosen = [moments[k] for k in _spread(len(moments), config.plate_moments)]
     masks = Masks.train([reduce_image(pictures.read(index), factor) for index in chosen], config.masks)
@@ -142,8 +152,14 @@ def look_over(
     for count, index in enumerate(moments, start=1):
         seen.append(masks.apply(reduce_image(pictures.read(index), factor)))
         progress(count, len(moments), "looking over the clip")
-    blobs = BlobConfig(smallest=max(50, round(0.12 * config.tracker.smallest**2)))
-    return masks, describe(masks.empty, seen, blobs, _reduced(occluders, pictures.size, masks.empty.shape))
+    return masks, describe(
+        masks.empty, seen, person_blobs(config), reduced_mask(occluders, pictures.size, masks.empty.shape)
+    )
+
+
+def person_blobs(config: PeopleConfig) -> BlobConfig:
+    """What may be a person at all, as a scene is learnt."""
+    return BlobConfig(smallest=max(50, round(0.12 * config.tracker.smallest**2)))
 
 
 def _write(out: Path, tracks: Tracks, summary: PeopleSummary, config: PeopleConfig, scene: Scene) -> None:
@@ -167,7 +183,7 @@ def _spread(count: int, most: int) -> list[int]:
     return [int(index) for index in np.linspace(0, count - 1, min(count, most)).round()]
 
 
-def _reduced(mask: Mask | None, size: tuple[int, int], shape: tuple[int, ...]) -> Mask | None:
+def reduced_mask(mask: Mask | None, size: tuple[int, int], shape: tuple[int, ...]) -> Mask | None:
     """Drawn occluders at the size that is worked on; a pixel is hidden where most of it is."""
     if mask is None:
         return None
@@ -197,5 +213,5 @@ def _replaced(config: Config, table: Mapping[str, Any], source: str) -> Config:
     return dataclasses.replace(replaced(config, plain, source), **inner)  # type: ignore[type-var]
 
 
-def _ignore(done: int, total: int, message: str = "") -> None:
+def ignore(done: int, total: int | None, message: str = "") -> None:
     """Progress that nobody watches."""

@@ -96,7 +96,7 @@ class PeopleTracker:
         self.people: list[Person] = []
         self.gone: list[Person] = []
         self._rng = np.random.default_rng(seed)
-        self._rate, self._count = frame_rate, 0
+        self._rate, self._count, self._settled = frame_rate, 0, -1
         self._motion = BoxMotion.within(scene.size, self.config.variances)
         self._rules = PartRules(self._motion, self.config.counts, self.config.part_colour, self.config.parts,
                                 frame_rate, self.config.held, detector)  # fmt: skip
@@ -124,14 +124,17 @@ class PeopleTracker:
         return gathered(person for person in self.gone + self.people if person.confirmed)
 
     def settle(self, frame: int) -> Tracks:
-        """Tracks up to a frame, for the last time: they are forgotten here, so that a stream may go on for ever.
+        """Tracks up to a frame that no call before gave: they are forgotten here, so that a stream may go on for ever.
 
         Whoever was lost, and has no sighting after that frame, is forgotten altogether.
         """
-        settled = gathered((person for person in self.gone + self.people if person.confirmed), frame)
-        for person in self.gone + self.people:
-            person.sightings = [sighting for sighting in person.sightings if sighting.frame > frame]
-        self.gone = [person for person in self.gone if person.sightings]
+        people = [person for person in self.gone + self.people if person.confirmed]
+        settled = gathered(people, (self._settled, frame))
+        self._settled = frame
+        for person in self.gone + self.people:  # the first one stays: it says since when somebody is followed
+            first, *rest = person.sightings
+            person.sightings = [first, *(sighting for sighting in rest if sighting.frame > frame)]
+        self.gone = [person for person in self.gone if person.sightings[-1].frame > frame]
         self._identities.forget({*self.gone, *self.people})
         return settled
 

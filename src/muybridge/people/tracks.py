@@ -40,17 +40,17 @@ class Tracks:
         return Tracks(boxes, self.parts.scaled(factor))
 
 
-def gathered(people: Iterable[Person], until: int | None = None) -> Tracks:
+def gathered(people: Iterable[Person], between: tuple[int, int] | None = None) -> Tracks:
     """The sightings of all of them, each up to the last frame in which something was seen of them.
 
-    until : int, optional
-        Sightings up to this frame only.
+    between : (after, last), optional
+        Sightings of these frames only.
     """
     rows: list[tuple[int, Sighting]] = []
     for person in people:
         last = max((i for i, sighting in enumerate(person.sightings) if sighting.seen), default=-1)
         mine = person.sightings[: last + 1]
-        rows += [(person.identity, one) for one in mine if until is None or one.frame <= until]
+        rows += [(person.identity, one) for one in mine if between is None or between[0] < one.frame <= between[1]]
     boxes = _column([sighting.box for _, sighting in rows], 6)
     bodies = BoxSeries(
         np.array([sighting.frame for _, sighting in rows], np.int64), np.array([i for i, _ in rows], np.int64),
