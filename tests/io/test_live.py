@@ -73,7 +73,7 @@ def given(*connections: list[np.ndarray]) -> Callable[[str, float], Iterator[np.
 
 class TestServer:
     def test_pictures_come(self):
-        """The first one goes in finding out what is sent; the others rise by 20 grey values, give or take compression."""
+        """The first one goes in finding out what is sent; the others rise by 20 grey values, within the compression."""
         with server(lambda _, show: [show(picture(20 * k)) for k in range(12)]) as address:
             source = LiveSource(address, LiveConfig(depth=100, stall_s=5.0, reconnects=0))
             found = list(source.frames())

@@ -19,6 +19,7 @@ COMMANDS = {
     "job": ("job:job", "Write a job for a folder in a known layout."),
     "sample": ("sample:sample", "Get a real recording to try things on."),
     "people": ("people:people", "Follow several people before one fixed colour camera."),
+    "mark": ("mark:mark", "Mark what hides people before a camera, for people."),
     "background": ("background:background", "Tell people from what stands still: a mask for every picture."),
     "synth": ("synth:synth", "Render a scene with known truth, for track."),
     "train": ("train:train", "Learn to guess poses from silhouettes, for filters that need no first pose."),

@@ -28,6 +28,7 @@ def people(
     seed: int = 0,
     frame_rate: float | None = None,
     occluders: Path | None = None,
+    marks: Path | None = None,
     set_: Overrides = None,
     overlay: bool = True,
     live: Switch = False,
@@ -52,6 +53,8 @@ def people(
         Frames per second of pictures; a video knows its own.
     occluders
         A picture that is white where something always stands before people; what is found by itself is added.
+    marks
+        A folder that `muybridge mark` wrote: such a picture, and how small the smallest people are.
     set_
         One setting, KEY=VALUE, such as tracker.smallest=60; may be repeated.
     overlay
@@ -66,13 +69,17 @@ def people(
     from muybridge.io.boxes import read_boxes
     from muybridge.io.live import is_live
     from muybridge.io.video import open_pictures
+    from muybridge.people.marks import read_marks
     from muybridge.people.run import PeopleConfig, run
 
-    config = PeopleConfig().with_settings(set_ or [])
+    if marks is not None and occluders is not None:
+        raise InputError("--occluders", expected="--occluders or --marks", got="both")
+    marked, settings = (None, []) if marks is None else read_marks(marks)
+    config = PeopleConfig().with_settings([*settings, *(set_ or [])])
     true_boxes = None if truth is None else read_boxes(truth)
     if true_boxes is not None:
         _check_scorer()
-    hidden = None if occluders is None else _white(occluders)
+    hidden = marked if occluders is None else _white(occluders)
     out = out or Path("runs") / (_stem(video) or "people")
     if live or is_live(video):
         return _watch(video, out, config, seed, frame_rate, seconds, hidden, true_boxes, show, reporting)

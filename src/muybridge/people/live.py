@@ -129,7 +129,7 @@ class _Run:
         self._tracker: PeopleTracker | None = None
         self._identities: set[int] = set()
         self._last = self._settled = -1
-        self._first_s = 0.0
+        self._first, self._first_s = 0, 0.0
         for name, head in ((TRACKS_FILE, ""), (PARTS_FILE, f"{HEADER}\n")):
             with disk_errors(out / name):
                 (out / name).write_text(head, encoding="utf-8")
@@ -138,7 +138,7 @@ class _Run:
         """One picture; learnt from, or searched for people."""
         begun = time.perf_counter()
         if self._learner is None:
-            self._begin(at, picture)
+            self._begin(number, at, picture)
         self._last, self.frames = number, self.frames + 1
         if self._known is None:
             self._see(at, picture, None)
@@ -175,7 +175,7 @@ class _Run:
         hidden = 0.0 if scene.occluders is None else float(scene.occluders.mean())
         return {"ground": ground, "silhouette": scene.silhouette.share.tolist(), "occluded_share": hidden}
 
-    def _begin(self, at: float, picture: Picture) -> None:
+    def _begin(self, number: int, at: float, picture: Picture) -> None:
         """Learn a scene of which nothing is known."""
         height, width = picture.shape[:2]
         if min(height, width) < SMALLEST_SIDE:
@@ -186,7 +186,7 @@ class _Run:
         self._learner = SceneLearner(config.learning, config.masks, person_blobs(config),
                                      pictures=config.plate_moments, masks=config.moments, drawn=drawn)  # fmt: skip
         self._known = self._watch = None
-        self._first_s, self._first = at, self.frames
+        self._first_s, self._first = at, number
         self.message = "learning the scene"
 
     def _see(self, at: float, picture: Picture, mask: Mask | None) -> None:
@@ -202,7 +202,7 @@ class _Run:
             self._watch = SceneWatch(self.config.watch, known[0].empty)
         self._watch.adopt(known[0].empty)
         if self._tracker is None:
-            rate = self.stream.frame_rate or (self.frames - self._first) / max(at - self._first_s, 1e-3)
+            rate = self.stream.frame_rate or (self._last - self._first) / max(at - self._first_s, 1e-3)
             self._rate = rate
             self._tracker = PeopleTracker(known[1], self.config.tracker, frame_rate=rate, seed=self.seed)
         self._tracker.adopt(known[1])
@@ -213,9 +213,11 @@ class _Run:
         change = self._watch.step(picture, mask)
         if change:
             self._change(number, at, picture, change)
-        elif mask.mean() <= self.config.watch.share:  # more is no foreground, and nothing is learnt from it
-            self._tracker.step(number, picture, mask)
-            self._see(at, picture, mask)
+        else:
+            flooded = float(mask.mean()) > self.config.watch.share  # that is no foreground, and teaches nothing
+            self._tracker.step(number, picture, mask, blind=flooded)
+            if not flooded:
+                self._see(at, picture, mask)
         self.message = f"{len(self._tracker.people)} people"
         second = max(1, round(self._rate))
         behind = max(self.config.learning.settle_s, self.config.tracker.identity.recall_s)
@@ -231,11 +233,13 @@ class _Run:
             known = self._learner.learn(at, self._known)
             if known[0].apply(picture).mean() < self.config.watch.share / 2:
                 self._adopt(known, at)
+                self._tracker.step(number, picture, known[0].apply(picture))
+                self._tracker.relight(picture)
                 self._note(number, f"{change}: the light, by a factor of {gains.mean():.2f}")
                 return
         self._tracker.abandon()
         self._note(number, f"{change}: the scene is learnt anew")
-        self._begin(at, picture)
+        self._begin(number, at, picture)
 
     def _note(self, number: int, text: str) -> None:
         self.events.append({"frame": number + 1, "what": text})

@@ -145,7 +145,7 @@ def look_over(
 ) -> tuple[Masks, Scene]:
     """The empty scene and what the clip says of where people walk, from moments spread over it."""
     progress = progress or ignore
-    moments = _spread(len(pictures), config.moments)
+    moments = moments_of(pictures, config)
     chosen = [moments[k] for k in _spread(len(moments), config.plate_moments)]
     masks = Masks.train([reduce_image(pictures.read(index), factor) for index in chosen], config.masks)
     seen = []
@@ -155,6 +155,11 @@ def look_over(
     return masks, describe(
         masks.empty, seen, person_blobs(config), reduced_mask(occluders, pictures.size, masks.empty.shape)
     )
+
+
+def moments_of(pictures: PictureSource, config: PeopleConfig) -> list[int]:
+    """The frames that are looked at beforehand."""
+    return _spread(len(pictures), config.moments)
 
 
 def person_blobs(config: PeopleConfig) -> BlobConfig:

@@ -14,13 +14,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from muybridge.errors import InputError
 from muybridge.evaluation.boxes import overlaps
 from muybridge.filters.particles import FloatArray
 from muybridge.people.blobs import BlobConfig, Mask, find_people
 from muybridge.people.box import PRINTED_VARIANCES, BoxMotion, CountConfig, boxes_from_states, states_from_boxes
-from muybridge.people.colour_likelihood import ColourConfig, Picture
+from muybridge.people.colour_likelihood import ColourConfig, ColourTarget, Picture
 from muybridge.people.detect import Places, find_standing
 from muybridge.people.evidence import Evidence, ForegroundConfig
 from muybridge.people.failure import FailureDetector
@@ -105,12 +106,16 @@ class PeopleTracker:
         self._places = None if scene.ground is None else Places.on(scene.ground, scene.size, smallest)
         self._identities = Identities(self.config.identity, frame_rate, scene.size)
 
-    def step(self, number: int, picture: Picture, mask: Mask) -> None:
-        """One frame: picture (H, W, 3) uint8 BGR and its foreground (H, W) bool; numbers must rise."""
+    def step(self, number: int, picture: Picture, mask: Mask, *, blind: bool = False) -> None:
+        """One frame: picture (H, W, 3) uint8 BGR and its foreground (H, W) bool; numbers must rise.
+
+        blind : the picture tells nothing, as if all of it were behind an occluder
+        """
         if picture.shape != self.scene.background.shape or mask.shape != picture.shape[:2]:
             raise InputError("picture and mask", expected=f"the scene's {self.scene.background.shape}",
                              got=f"{picture.shape} and {mask.shape}")  # fmt: skip
-        evidence = Evidence(mask, self.scene.silhouette, self.config.foreground, self.scene.occluders)
+        hidden = np.ones(mask.shape, bool) if blind else self.scene.occluders
+        evidence = Evidence(mask, self.scene.silhouette, self.config.foreground, hidden)
         frame = Frame(number, to_luma_chroma(picture), self._background, evidence)
         order = sorted(self.people, key=nearness)
         for rank, person in enumerate(order):
@@ -144,6 +149,13 @@ class PeopleTracker:
             raise InputError("scene", expected=f"the size {self.scene.size}", got=str(scene.size))
         self.scene, self._background = scene, to_luma_chroma(scene.background)
         self._places = None if scene.ground is None else Places.on(scene.ground, scene.size, self.config.smallest)
+
+    def relight(self, picture: NDArray[np.uint8]) -> None:
+        """The light has changed: what people look like is learnt anew, of a picture (H, W, 3) uint8 BGR."""
+        luma_chroma = to_luma_chroma(picture)
+        for person in self.people:
+            person.body.target = ColourTarget.learn(luma_chroma, person.body.box, self.config.colour)
+            person.look, person.looks, person.parts = None, 0, None
 
     def abandon(self) -> None:
         """Give everybody up: nothing is where it was."""

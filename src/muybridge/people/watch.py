@@ -72,7 +72,10 @@ class SceneWatch:
         small = _reduced(picture)
         # It multiplies what it is given by the window, in place.
         (x, y), response = cv2.phaseCorrelate(self._plate.copy(), small.copy(), self._window)
-        if response < SURE or _alike(self._plate, small, round(x), round(y)) < _alike(self._plate, small, 0, 0) + BETTER:
+        if (
+            response < SURE
+            or _alike(self._plate, small, round(x), round(y)) < _alike(self._plate, small, 0, 0) + BETTER
+        ):
             return 0.0, 0.0
         scale = picture.shape[1] / self._plate.shape[1]
         return x * scale, y * scale
