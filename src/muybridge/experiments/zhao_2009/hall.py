@@ -31,6 +31,7 @@ class HallClip:
     seed: int
     seconds: float
     rate: float
+    size: tuple[int, int] = (320, 240)
     people: int = 3
     empty: int = 60
 
@@ -66,17 +67,17 @@ class HallClip:
         from muybridge.synthetic.surveillance import surveillance_scene
 
         made = surveillance_scene(seed=self.seed, duration=self.seconds, rate=self.rate, people=self.people,
-                                  events=HAPPENS[self.scene])  # fmt: skip
+                                  size=self.size, events=HAPPENS[self.scene])  # fmt: skip
         shots = [shoot_people(made, frame) for frame in range(made.frame_count)]
         before = [views[0] for views in empty(made, self.empty)][::-1]  # they come latest first
         return np.stack([*before, *(shot.image for shot in shots)]), np.stack([shot.mask for shot in shots])
 
 
 def clips(scale: Amount, seeds: int) -> tuple[HallClip, ...]:
-    """Every happening for so many seeds: 16 seconds at 10 Hz for a quick look, else 40 at 15."""
-    seconds, rate = (16.0, 10.0) if scale.quick else (40.0, 15.0)
+    """Every happening for so many seeds: 16 s at 10 Hz of 160 x 120 for a quick look, else 40 at 15 of 320 x 240."""
+    seconds, rate, size = (16.0, 10.0, (160, 120)) if scale.quick else (40.0, 15.0, (320, 240))
     numbers = range(FIRST_SEED, FIRST_SEED + min(scale.few(seeds), scale.seeds))
-    return tuple(HallClip(scene, seed, seconds, rate) for seed in numbers for scene in HAPPENS)
+    return tuple(HallClip(scene, seed, seconds, rate, size) for seed in numbers for scene in HAPPENS)
 
 
 @lru_cache(maxsize=1)
