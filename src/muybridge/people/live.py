@@ -27,6 +27,7 @@ from muybridge.io.run_facts import peak_memory_mb, speed, versions
 from muybridge.io.run_folder import write_summary
 from muybridge.people.blobs import Mask
 from muybridge.people.box import boxes_from_states
+from muybridge.people.failure import detector_named
 from muybridge.people.learning import SceneLearner
 from muybridge.people.masks import Masks
 from muybridge.people.run import (
@@ -118,6 +119,7 @@ class _Run:
 
     def __init__(self, config: PeopleConfig, out: Path, stream: Stream, seed: int, drawn: Mask | None) -> None:
         self.config, self.out, self.stream, self.seed, self.drawn = config, out, stream, seed, drawn
+        self._detector = detector_named(config.repair)
         self.frames = self.boxes = 0
         self.message = "learning the scene"
         self.events: list[dict[str, Any]] = []
@@ -204,7 +206,8 @@ class _Run:
         if self._tracker is None:
             rate = self.stream.frame_rate or (self._last - self._first) / max(at - self._first_s, 1e-3)
             self._rate = rate
-            self._tracker = PeopleTracker(known[1], self.config.tracker, frame_rate=rate, seed=self.seed)
+            self._tracker = PeopleTracker(known[1], self.config.tracker, frame_rate=rate, seed=self.seed,
+                                          detector=self._detector)  # fmt: skip
         self._tracker.adopt(known[1])
 
     def _follow(self, number: int, at: float, picture: Picture) -> None:
