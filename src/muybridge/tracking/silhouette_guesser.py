@@ -84,7 +84,8 @@ class SilhouetteGuesser:
         if mixture is None:
             return None
         means = PoseOutputs(self.body).to_poses(mixture.means, np.zeros(3))[:, 3:]
-        return Guess(mixture.weights, means, mixture.variances, np.arange(3, 3 + means.shape[1]))
+        trusted = self.regressor.config.trusted_variance
+        return Guess(mixture.weights, means, mixture.variances, np.arange(3, 3 + means.shape[1]), trusted)
 
 
 def guesser_of_job(job: Job, model: ImageLikelihood) -> SilhouetteGuesser | None:
