@@ -43,7 +43,7 @@ def test_every_part_asks_for_trials_that_can_be_run(quick: bool) -> None:
 )
 def test_the_cases_are_settings_of_one_filter(name: str, settings: dict) -> None:
     assert conditions.case_of(name) == settings
-    assert conditions.printed(name, SCALE, Clip()).filter_config == replace(agp_pf.PRINTED, **settings)
+    assert conditions.printed(name, SCALE, Clip()).filter_config == replace(agp_pf.PRINTED, sharpness=2.0, **settings)
 
 
 def test_without_layers_there_is_one() -> None:

@@ -131,6 +131,13 @@ class TestPrior:
         assert agp_pf.share_of_guess(guess, wider) == pytest.approx(np.exp(-0.5))
         assert agp_pf.share_of_guess(None, replace(wider, alpha=0.4)) == 0.0
 
+    def test_its_lambda_is_the_settings_else_the_guesses_own_else_the_papers(self) -> None:
+        guess = Guess(np.ones(1), np.zeros((1, 2)), np.full((1, 2), 0.003), SPOKEN)
+        calibrated, open_ = replace(guess, trusted_variance=0.03), replace(agp_pf.PRINTED, trusted_variance=None)
+        assert agp_pf.share_of_guess(calibrated, open_) == pytest.approx(np.exp(-0.1))
+        assert agp_pf.share_of_guess(calibrated, agp_pf.PRINTED) == pytest.approx(np.exp(-1.0))
+        assert agp_pf.share_of_guess(guess, open_) == pytest.approx(np.exp(-1.0))
+
     def test_the_guess_is_drawn_from_once(self) -> None:
         """Where it is impossible, no later layer goes there: 30 standard deviations of the noise away."""
         likelihood = Asked(guess=at(5.0), impossible=3.0)

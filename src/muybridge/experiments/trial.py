@@ -16,7 +16,7 @@ from muybridge.filters import method
 from muybridge.filters.state import CommonConfig
 from muybridge.io.run_log import job_digest
 from muybridge.likelihood.cues import CueWeights
-from muybridge.tracking.motion import SEARCHING, Motion, motion_of
+from muybridge.tracking.motion import GUESSING_PRINTED, SEARCHING, Motion, motion_of
 
 if TYPE_CHECKING:
     from muybridge.experiments.running import Result
@@ -154,9 +154,11 @@ class Trial:
 
     @property
     def motion(self) -> Motion:
-        """How the person may move: the method's own, at full velocity gain where the paper is followed."""
+        """How the person may move: the method's own, or as its paper has it."""
         base = motion_of(self.method, self.clip.cameras)
-        base = replace(SEARCHING, velocity_gain=1.0, usual_weight=0.0) if self.printed else base
+        if self.printed:
+            searching = replace(SEARCHING, velocity_gain=1.0, usual_weight=0.0)
+            base = GUESSING_PRINTED if self.method == "agp-pf" else searching
         return replace(base, **dict(self.moving))
 
     @property

@@ -43,6 +43,8 @@ from muybridge.filters.guess import Guess, guess_of
 from muybridge.filters.particles import FloatArray
 from muybridge.filters.state import CommonConfig, Info, Likelihood, PlainInit, State, initial_state, require
 
+PRINTED_TRUST = 0.003  # lambda of (19), state units squared (radians); section V-C1
+
 
 @dataclass(frozen=True, kw_only=True)
 class Config(annealed.Config):
@@ -52,18 +54,21 @@ class Config(annealed.Config):
     layers: int = 5  # M; section V-C1
     survival: float = 0.5  # (24)
     shrink: float = 0.5**0.5  # of standard deviations: Sigma, the covariance, halves; section IV-C
-    trusted_variance: float = 0.003  # lambda of (19), state units squared (radians); section V-C1
+    trusted_variance: float | None = PRINTED_TRUST  # lambda of (19); None: what the guess says of itself, if it does
     alpha: float | None = None  # share of the first layer drawn from the guess; None: (19)
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        require("trusted_variance", self.trusted_variance > 0, "above 0", self.trusted_variance)
+        known = self.trusted_variance is None or self.trusted_variance > 0
+        require("trusted_variance", known, "above 0", self.trusted_variance)
         require("alpha", self.alpha is None or 0 <= self.alpha <= 1, "between 0 and 1", self.alpha)
 
 
-# The expectation: section IV-B. The costs' sum, (14): a likelihood of two cues is their mean.
-PRINTED = Config(estimate="mean", sharpness=2.0)
-WORKING = PRINTED
+PRINTED = Config(estimate="mean")  # the expectation: section IV-B
+# Measured on rendered people, see docs/benchmarks.md, "The guided Gaussian-process filter". The sharpness matters most:
+# without it what is usual outweighs what is seen.
+WORKING = Config(survival=0.1, contraction=0.8, sharpness=200.0, trusted_variance=None, estimate="mean",
+                 resampling="systematic")  # fmt: skip
 
 #: The cases that the paper compares, section V-C: no layers is one, under the likelihood as it is.
 PRESETS = {
@@ -126,7 +131,8 @@ def share_of_guess(guess: Guess | None, config: Config) -> float:
         return 0.0
     if config.alpha is not None:
         return config.alpha
-    return float(np.exp(-guess.variance / config.trusted_variance))
+    trusted = config.trusted_variance or guess.trusted_variance or PRINTED_TRUST
+    return float(np.exp(-guess.variance / trusted))
 
 
 def largest_changes(states: FloatArray) -> FloatArray:

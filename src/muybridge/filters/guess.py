@@ -31,12 +31,15 @@ class Guess:
     means, variances : (K, B) float64, state units, and their squares
     components : (B,) int
         Those of the state that it speaks of, each once.
+    trusted_variance : float, state units squared, optional
+        lambda of (19): how uncertain guesses may be and still be right, where whoever guesses has found that out.
     """
 
     weights: FloatArray
     means: FloatArray
     variances: FloatArray
     components: NDArray[np.intp]
+    trusted_variance: float | None = None
 
     def __post_init__(self) -> None:
         weights, means = np.array(self.weights, dtype=np.float64), np.array(self.means, dtype=np.float64)
@@ -51,6 +54,8 @@ class Guess:
         if variances.shape != shape or not (np.isfinite(variances).all() and (variances >= 0).all()):
             got = f"shape {variances.shape}, {variances}"
             raise InputError("guess: variances", expected=f"shape {shape}, finite and not negative", got=got)
+        if self.trusted_variance is not None and not self.trusted_variance > 0:
+            raise InputError("guess: trusted variance", expected="above 0", got=repr(self.trusted_variance))
         columns = {"weights": weights / weights.sum(), "means": means, "variances": variances, "components": components}
         for name, value in columns.items():
             value.flags.writeable = False

@@ -75,21 +75,11 @@ class PoseMixture:
         poses = self.components.checked("poses", poses)
         with np.errstate(divide="ignore"):
             terms = np.log(self.weights) + self.mode_log_probs(poses)
-        highest = terms.max(axis=1)
-        out: FloatArray = highest + np.log(np.exp(terms - highest[:, None]).sum(axis=1))
-        return out
+        return _log_sum(terms)
 
     def mode_log_probs(self, poses: FloatArray) -> FloatArray:
         """(N, K) log N(y; y_k, Sigma_k) of poses (N, D)."""
-        away = self.components.wrapped(poses[:, None] - self.means)
-        exponents = -0.5 * away**2 / self.variances
-        for index in self.components.circular:
-            images = away[..., index, None] + 2 * np.pi * np.array([-1.0, 0.0, 1.0])
-            logs = -0.5 * images**2 / self.variances[:, index, None]
-            highest = logs.max(axis=-1)
-            exponents[..., index] = highest + np.log(np.exp(logs - highest[..., None]).sum(axis=-1))
-        out: FloatArray = np.sum(exponents - 0.5 * np.log(2 * np.pi * self.variances), axis=-1)
-        return out
+        return _log_normal(self.components, poses[:, None] - self.means, self.variances)
 
     @property
     def most_probable(self) -> int:
@@ -167,11 +157,30 @@ def combined(
 
 def _overlap(mixture: PoseMixture, other: PoseMixture) -> FloatArray:
     """(K,) log of the integral of each mode's density times the other mixture's."""
-    rows = []
-    for mean, variance in zip(mixture.means, mixture.variances, strict=True):
-        wider = replace(other, variances=other.variances + variance)
-        rows.append(float(wider.log_prob(mean[None])[0]))
-    return np.array(rows)
+    away = mixture.means[:, None] - other.means
+    with np.errstate(divide="ignore"):
+        terms = np.log(other.weights) + _log_normal(
+            mixture.components, away, mixture.variances[:, None] + other.variances
+        )
+    return _log_sum(terms)
+
+
+def _log_normal(components: PoseComponents, away: FloatArray, variances: FloatArray) -> FloatArray:
+    """(N, K) log N(away; 0, variances), of what is circular wrapped round; away (N, K, D) and what broadcasts to it."""
+    away = components.wrapped(away)
+    exponents = -0.5 * away**2 / variances
+    for index in components.circular:
+        images = away[..., index, None] + 2 * np.pi * np.array([-1.0, 0.0, 1.0])
+        exponents[..., index] = _log_sum(-0.5 * images**2 / variances[..., index, None])
+    out: FloatArray = np.sum(exponents - 0.5 * np.log(2 * np.pi * variances), axis=-1)
+    return out
+
+
+def _log_sum(logs: FloatArray) -> FloatArray:
+    """Logarithm of the sum of exponentials over the last axis."""
+    highest = logs.max(axis=-1)
+    out: FloatArray = highest + np.log(np.exp(logs - highest[..., None]).sum(axis=-1))
+    return out
 
 
 def _positive(trusted_variance: float) -> float:

@@ -58,11 +58,11 @@ def placed(guess: Guess, observation: Observation, pose: np.ndarray) -> Guess:
         return guess
     places = np.array([_stood(mode, observation)[PLACE] for mode in guess.poses(pose)])
     sd = PLACE_SD if np.count_nonzero(observation.areas) > 1 else PLACE_SD_ONE
-    return Guess(
-        guess.weights,
-        np.concatenate([places, guess.means], axis=1),
-        np.concatenate([np.full_like(places, sd**2), guess.variances], axis=1),
-        np.concatenate([PLACE, guess.components]),
+    return replace(
+        guess,
+        means=np.concatenate([places, guess.means], axis=1),
+        variances=np.concatenate([np.full_like(places, sd**2), guess.variances], axis=1),
+        components=np.concatenate([PLACE, guess.components]),
     )
 
 

@@ -33,7 +33,9 @@ from muybridge.regression.model_file import require_components
 
 SHIPPED = Path(__file__).parents[1] / "regression" / "models" / "person.npz"
 FEWEST_PIXELS = 200  # a smaller silhouette shows too little of a pose
-AGREEMENT = 0.3  # how much the cameras vote for each other's modes, see `regression.combined`
+#: How much the cameras vote for each other's modes, see `regression.combined`. Without votes a draw is 56 mm worse;
+#: from .1 to 1 there is no difference: docs/benchmarks.md, "The guided Gaussian-process filter".
+AGREEMENT = 0.3
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,7 +86,8 @@ class SilhouetteGuesser:
         if mixture is None:
             return None
         means = PoseOutputs(self.body).to_poses(mixture.means, np.zeros(3))[:, 3:]
-        return Guess(mixture.weights, means, mixture.variances, np.arange(3, 3 + means.shape[1]))
+        trusted = self.regressor.config.trusted_variance
+        return Guess(mixture.weights, means, mixture.variances, np.arange(3, 3 + means.shape[1]), trusted)
 
 
 def guesser_of_job(job: Job, model: ImageLikelihood) -> SilhouetteGuesser | None:

@@ -25,6 +25,7 @@ MOTIONS = ("walk", "jog")
 FIRST_TRAINING_SEED = 300  # takes and camera directions that no tracked clip has: those have seeds from 0
 #: (14): silhouettes, two-sided, and edges.
 SEDAI = CueWeights(silhouette=1.0, edges=1.0)
+SUM = 2.0  # sharpness: (14) adds the costs; cues' weights are made to sum to 1
 RATE = 60.0
 NAMES = ("AGP-PF", "AGP", "APF", "GP-PF", "PF")
 
@@ -68,7 +69,7 @@ def model_of(scale: Scale, folder: Path) -> SilhouetteRegressor:
 def printed(name: str, scale: Scale, clip: Clip, **settings: Any) -> Trial:
     """One of the paper's filters with its settings and its measurement, no first pose."""
     trial = Trial(clip, "agp-pf", printed=True, cues=SEDAI, begin="guess", guesser=model_name(scale), seed=clip.seed)
-    return trial.with_settings(**{**case_of(name), **settings})
+    return trial.with_settings(**{"sharpness": SUM, **case_of(name), **settings})
 
 
 def working(name: str, scale: Scale, clip: Clip, **settings: Any) -> Trial:
