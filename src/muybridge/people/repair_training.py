@@ -50,7 +50,7 @@ class RepairTraining:
     good: float = 0.6  # share of a part's box that lies on the part: a good example from,
     failed: float = 0.3  # a failure up to
     seen: float = 0.8  # share of every part that nothing hides, in an example
-    penalty: float = 10.0  # C of the machines
+    penalty: float = 1.0  # C of the machines
     kernel: float = 1.0  # width of the kernels, in usual distances of two examples
     false_alarms: float = 0.01  # of good examples
 
@@ -126,7 +126,7 @@ def learn(known: Examples, held_back: Examples, config: RepairTraining) -> tuple
     for k, name in enumerate((*PARTS, "several")):
         (features, good), (other, other_good) = (_of_machine(k, examples, config) for examples in (known, held_back))
         machine = train_support_vectors(features, good, penalty=config.penalty, spread=config.kernel)
-        if other_good.any():
+        if k < len(PARTS) and other_good.any():  # the fourth is asked about failures only: neither answer is an alarm
             machine = machine.tuned(other[other_good], config.false_alarms)
         machines.append(machine)
         wrong = machine.margins(other) < 0 if len(other) else np.zeros(0, bool)
