@@ -1,7 +1,7 @@
 """One box for a whole person, followed by colour: ours against Nummiaro's (thesis, 6.2, Tables 1 to 4).
 
 Both are the same particle filter with the thesis' motion and a fixed number of particles; what differs is the
-likelihood. Everybody is started at the truth when first seen whole, and followed until they leave.
+likelihood. Everybody is started at the truth when first seen whole, and followed until their middle leaves the picture.
 """
 
 from __future__ import annotations
@@ -50,6 +50,7 @@ class _Followed:
     target: Any
     state: condensation.State
     off: list[float] = field(default_factory=list)
+    there: bool = True
     seconds: float = 0.0
 
 
@@ -58,6 +59,7 @@ class BoxTrial(PeopleTrial):
     """One method with so many particles."""
 
     RESULT: ClassVar[type[Any]] = BoxResult
+    REVISION: ClassVar[int] = 2
     method: str = "ours"
     particles: int = 600
 
@@ -77,14 +79,15 @@ class BoxTrial(PeopleTrial):
             for k, person in enumerate(int(number) for number in shot.numbers):
                 box = states_from_boxes(shot.boxes[k])[0]
                 one = everybody.get(person)
-                if one is not None:
+                if one is not None and one.there:
+                    one.there = bool((motion.lower[:2] <= box[:2]).all() and (box[:2] <= motion.upper[:2]).all())
                     began = time.thread_time()
                     likelihood = one.target.observe(picture, empty)
                     one.state, _ = condensation.step(rng, one.state, likelihood, motion, config)
                     one.target = one.target.updated(likelihood.histogram(one.state.estimate))
                     one.seconds += time.thread_time() - began
                     one.off.append(float(np.hypot(*(one.state.estimate[:2] - box[:2]))))
-                elif is_whole(shot, k, self.clip.size):
+                elif one is None and is_whole(shot, k, self.clip.size):
                     target = (ColourTarget if ours else NummiaroTarget).learn(picture, box)
                     state = condensation.init(rng, box, start_sd, config, motion.lower, motion.upper)
                     everybody[person] = _Followed(target, state)
