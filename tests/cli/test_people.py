@@ -14,6 +14,7 @@ from muybridge.cli import app
 from muybridge.io.boxes import BoxSeries
 from muybridge.io.mot import write_mot
 from muybridge.io.video import open_pictures
+from muybridge.people.marks import Marks, write_marks
 
 EMPTY = empty_scene()
 WALKERS = [Walker((10, 150), (310, 150), 0, 29, 0), Walker((310, 200), (10, 200), 5, 34, 1)]
@@ -79,6 +80,11 @@ def test_scores_against_a_truth(pictures: Path, tmp_path: Path, capfd: pytest.Ca
         (["PICTURES", "--occluders", "none.png"], "none.png"),
         (["PICTURES", "--frame-rate", "-1"], "frame rate"),
         (["PICTURES", "--occluders", "SMALL"], "occluders"),
+        (["PICTURES", "--marks", "none"], "none"),
+        (["PICTURES", "--marks", "a", "--occluders", "SMALL"], "--occluders or --marks"),
+        (["PICTURES", "--seconds", "3"], "a camera, or --live"),
+        (["97"], "camera 97"),
+        (["http://127.0.0.1:1/"], "127.0.0.1:1"),
     ],
 )
 def test_bad_input_is_one_line_and_nothing_written(
@@ -91,3 +97,28 @@ def test_bad_input_is_one_line_and_nothing_written(
     said, line = capfd.readouterr()
     assert line.count("\n") == 1 and words in line, line
     assert not out.exists() or not list(out.iterdir())
+
+
+def test_pictures_as_a_camera(pictures: Path, tmp_path: Path, capfd: pytest.CaptureFixture) -> None:
+    """Two seconds are learnt from; what is marked is taken up."""
+    write_marks(tmp_path / "marks", Marks(smallest=31.0), (320, 240))
+    options = ["--live", "--frame-rate", "10", "--json", "--set", "learning.first_s=2", "--seconds", "3"]
+    out = tmp_path / "out"
+    assert app.run(["people", str(pictures), "--out", str(out), "--marks", str(tmp_path / "marks"), *options]) == 0
+    record = json.loads(capfd.readouterr().out.splitlines()[-1])
+    assert record["frames"] == 31 and record["stream"]["dropped"] == 0
+    assert sorted(path.name for path in out.iterdir()) == ["parts.csv", "run.json", "tracks.txt"]
+    assert json.loads((out / "run.json").read_text())["settings"]["tracker"]["smallest"] == 31
+
+
+def test_a_window_where_there_is_none(
+    pictures: Path, tmp_path: Path, capfd: pytest.CaptureFixture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def headless(name: str) -> None:
+        raise cv2.error("no GUI")
+
+    monkeypatch.setattr(cv2, "namedWindow", headless)
+    options = ["--live", "--frame-rate", "10", "--show", "--out", str(tmp_path)]
+    assert app.run(["people", str(pictures), *options]) == 2
+    line = capfd.readouterr().err
+    assert "an OpenCV with windows" in line and line.count("\n") == 1

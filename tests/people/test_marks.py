@@ -5,6 +5,7 @@ from __future__ import annotations
 import http.client
 import json
 import threading
+import time
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -118,6 +119,9 @@ class TestServer:
 
     def test_the_last_button(self, server: MarkServer) -> None:
         assert ask(server, "POST", "/done", {"polygons": [], "smallest": None})[0] == 200
+        until = time.monotonic() + 10  # the answer comes first, so that the browser has it
+        while not server.finished and time.monotonic() < until:
+            time.sleep(0.01)
         assert server.finished and read_marks(server.folder) == (None, [])
 
     @pytest.mark.parametrize("table", [{"polygons": [[[1, 2]]]}, [], {"smallest": "tall"}])

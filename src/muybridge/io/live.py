@@ -218,6 +218,7 @@ def connected(address: str, stall_s: float) -> Iterator[Picture]:
 def _webcam(number: int) -> Iterator[Picture]:
     import cv2
 
+    cv2.utils.logging.setLogLevel(cv2.utils.logging.LOG_LEVEL_SILENT)  # what is wrong is said here, once
     camera = cv2.VideoCapture(number)
     try:
         if not camera.isOpened():

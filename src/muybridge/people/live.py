@@ -132,9 +132,6 @@ class _Run:
         self._identities: set[int] = set()
         self._last = self._settled = -1
         self._first, self._first_s = 0, 0.0
-        for name, head in ((TRACKS_FILE, ""), (PARTS_FILE, f"{HEADER}\n")):
-            with disk_errors(out / name):
-                (out / name).write_text(head, encoding="utf-8")
 
     def step(self, number: int, at: float, picture: Picture) -> None:
         """One picture; learnt from, or searched for people."""
@@ -183,6 +180,8 @@ class _Run:
         if min(height, width) < SMALLEST_SIDE:
             raise InputError(self.stream.name, expected=f"pictures of at least {SMALLEST_SIDE} x {SMALLEST_SIDE} "
                              "pixels", got=f"{width} x {height}")  # fmt: skip
+        if self.frames == 0:
+            _start_tables(self.out)
         drawn = reduced_mask(self.drawn, self.stream.size, picture.shape[:2])
         config = self.config
         self._learner = SceneLearner(config.learning, config.masks, person_blobs(config),
@@ -258,6 +257,12 @@ class _Run:
         self.boxes += len(tracks.boxes)
         self._identities.update(tracks.boxes.ids.tolist())
         _append(self.out, tracks)
+
+
+def _start_tables(out: Path) -> None:
+    for name, head in ((TRACKS_FILE, ""), (PARTS_FILE, f"{HEADER}\n")):
+        with disk_errors(out / name):
+            (out / name).write_text(head, encoding="utf-8")
 
 
 def _append(out: Path, tracks: Tracks) -> None:

@@ -25,6 +25,7 @@ class MarkServer(ThreadingHTTPServer):
     """
 
     daemon_threads = True
+    timeout = 0.2  # seconds: how often it is looked whether the last button was pressed
 
     def __init__(self, picture: NDArray[np.uint8], folder: Path, marks: Marks | None = None, port: int = 0) -> None:
         import cv2
