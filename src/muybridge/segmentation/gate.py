@@ -3,8 +3,8 @@
 A model that learns everything takes whoever stands still for background within seconds. One that learns background
 alone never takes in a door that was opened, nor that the lamps are off. So foreground is learnt where
 
-- more than `FLOOD` of the picture is foreground: the light has changed, and nobody is that large; but not where somebody
-  has been for `LASTING` pictures;
+- more than `FLOOD` of the picture is foreground: the light has changed, and nobody is that large; but not where
+  somebody has been for `LASTING` pictures;
 - a whole component has not moved for `rest` pictures: a thing. Somebody who stands still sways and breathes, so that at
   least `STIRRING` of the pixels of a person change within seconds;
 - a pixel has been foreground for `patience` pictures in a row, whatever it does.
