@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from muybridge.errors import InputError
-from muybridge.segmentation.gate import FLOOD, MOVED, SETTLE, STIRRING, Gate
+from muybridge.segmentation.gate import FLOOD, LASTING, MOVED, SETTLE, STIRRING, Gate
 from muybridge.segmentation.kde import KdeConfig
 
 SHAPE = (40, 50)
@@ -68,6 +68,14 @@ def test_when_the_light_changes_everything_is_learnt_until_it_has_settled() -> N
     after = [gate.learnt(PERSON, PICTURE).all() for _ in range(SETTLE + 2)]
     assert after == [True] * (SETTLE - 1) + [False] * 3
     assert not gate.learnt(box(slice(0, rows - 2), slice(None)), PICTURE).all()  # not more than FLOOD
+
+
+def test_who_was_there_before_the_light_changed_is_not_learnt_with_it() -> None:
+    gate, everything = Gate(SHAPE, 100), np.ones(SHAPE, bool)
+    for _ in range(LASTING):
+        gate.learnt(PERSON, PICTURE)
+    learnt = gate.learnt(everything, PICTURE)
+    assert not learnt[PERSON].any() and learnt[:, 30:].all()
 
 
 def test_grey_pictures() -> None:

@@ -3,7 +3,8 @@
 A model that learns everything takes whoever stands still for background within seconds. One that learns background
 alone never takes in a door that was opened, nor that the lamps are off. So foreground is learnt where
 
-- more than `FLOOD` of the picture is foreground: the light has changed, and nobody is that large;
+- more than `FLOOD` of the picture is foreground: the light has changed, and nobody is that large; but not where
+  somebody has been for `LASTING` pictures;
 - a whole component has not moved for `rest` pictures: a thing. Somebody who stands still sways and breathes, so that at
   least `STIRRING` of the pixels of a person change within seconds;
 - a pixel has been foreground for `patience` pictures in a row, whatever it does.
@@ -19,7 +20,9 @@ from numpy.typing import NDArray
 from muybridge.errors import InputError
 
 FLOOD, SETTLE = 0.4, 15
-"""Share of the picture; and for how many more pictures everything is learnt, while exposure settles."""
+"""Share of the picture; and for how many more pictures it is learnt, while exposure settles."""
+LASTING = 5
+"""Pictures for which somebody has been there: what has been foreground for fewer may be the light already."""
 MOVED = 20
 """Grey values, largest over the channels, from which on a pixel has changed; several deviations of usual noise."""
 STIRRING = 0.02
@@ -43,6 +46,7 @@ class Gate:
         self._still = np.zeros(shape, np.int32)
         self._looked: NDArray | None = None
         self._settling = 0
+        self._people = np.zeros(shape, bool)
         self._everything = np.ones(shape, bool)
 
     def learnt(self, foreground: NDArray, picture: NDArray) -> NDArray:
@@ -54,7 +58,8 @@ class Gate:
         self._watch(picture)
         self._settling = SETTLE if foreground.mean() > FLOOD else self._settling - 1
         if self._settling > 0:
-            return self._everything
+            return ~self._people
+        self._people = self._age >= LASTING
         return ~foreground | (self._age > self.patience) | self._things(foreground)
 
     def _watch(self, picture: NDArray) -> None:
