@@ -64,13 +64,13 @@ class Moments(Generic[Item]):
         """Whether it was taken."""
         if time < self._due:
             return False
-        self._due = time + 0.999 * self.interval  # times that are sums of fractions
         self.items.append(item)
         if len(self.items) > self.most:
             if 2 * self.interval <= self.longest:
                 self.items, self.interval = self.items[::2], 2 * self.interval
             else:
                 del self.items[0]
+        self._due = time + 0.999 * self.interval  # times that are sums of fractions
         return True
 
 
