@@ -17,7 +17,10 @@ from people.test_repair_training import examples
 @pytest.fixture
 def no_scenes(monkeypatch: pytest.MonkeyPatch) -> None:
     """Examples without rendering anybody."""
-    made = lambda seed, config: examples(np.random.default_rng(seed))  # noqa: E731
+
+    def made(seed: int, config: object) -> object:
+        return examples(np.random.default_rng(seed))
+
     monkeypatch.setattr(repair_training, "examples_of_scene", made)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields
 from pathlib import Path
@@ -83,7 +84,7 @@ class PeopleClip:
 
 
 @dataclass(frozen=True)
-class PeopleTrial:
+class PeopleTrial(ABC):
     """What trials on such clips share; a kind of trial says what is measured, and as what it is kept."""
 
     RESULT: ClassVar[type[Any]]
@@ -116,9 +117,9 @@ class PeopleTrial:
         """See `RunnableTrial`."""
         return self.measure(self.clip.load(folder))
 
+    @abstractmethod
     def measure(self, pictures: ClipPictures) -> Any:
         """The result."""
-        raise NotImplementedError
 
     def result(self, values: Mapping[str, Any]) -> Any:
         """From `asdict` by way of JSON."""
