@@ -55,7 +55,7 @@ def plot_intervals(
         stroke = {"marker": "|", "linestyle": "none", "markersize": 12, "markeredgewidth": 1.6}
         artists += ax.plot(least, places, color=theme.warning, label="at least", **stroke)  # type: ignore[arg-type]
         artists += ax.plot(aim, places, color=theme.accent, label="aim", **stroke)  # type: ignore[arg-type]
-        ax.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=2, labelcolor=theme.muted)
+        ax.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), labelcolor=theme.muted)  # beside: titles are above
     ax.set_yticks(places, labels)
     ax.set_ylim(len(labels) - 0.4, -0.6)
     ax.grid(False, axis="y")
