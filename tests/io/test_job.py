@@ -80,8 +80,29 @@ class TestRead:
     def test_defaults(self) -> None:
         table = {"calibration": {"file": "c"}, "camera": [{"name": "a", "pictures": "a.mp4"}]}
         read = job.from_table(table, Path("/data"))
-        assert read.seed == 1 and read.frames is None and read.filter.name == "guided"
+        assert read.seed == 1 and read.frames is None and read.filter.name == "auto"
         assert read.start.pose == "auto" and read.body.fit and not read.calibration.corrected
+
+
+class TestChosenFilter:
+    CAMERAS = [{"name": name, "pictures": f"{name}.mp4"} for name in "ab"]
+
+    def chosen(self, cameras: int, overrides: list[str]) -> job.FilterInput:
+        table = {"calibration": {"file": "c"}, "camera": self.CAMERAS[:cameras]}
+        return job.from_table(table, Path("/data"), overrides=overrides).chosen_filter
+
+    def test_several_cameras_climb_and_one_searches(self) -> None:
+        assert self.chosen(2, []) == job.FilterInput(name="guided")
+        one = self.chosen(1, [])
+        assert one.name == "annealed" and one.settings == {"particles": 500, "layers": 10, "by_limb": False}
+
+    def test_what_is_given_wins(self) -> None:
+        assert self.chosen(1, ["filter.layers=3"]).settings["layers"] == 3
+        assert self.chosen(1, ["filter.name=guided"]) == job.FilterInput(name="guided")
+
+    def test_a_paper_is_not_mended(self) -> None:
+        one = self.chosen(1, ["filter.preset=printed"])
+        assert one == job.FilterInput(name="annealed", preset="printed")
 
 
 class TestOverrides:

@@ -128,10 +128,14 @@ class GuessInput(Table, frozen=True):
 GUESS_WORDS = ("shipped", "none")
 
 
+AUTO = "auto"
+
+
 class FilterInput(Table, frozen=True):
     """`[filter]`: a method of `muybridge.filters.METHODS`; every other key is a setting of that method."""
 
-    name: str = "guided"
+    name: str = AUTO
+    """`auto`: as `Job.chosen_filter` has it."""
     preset: Literal["working", "printed"] = "working"
     """What the settings not given here are: those measured to work, or those of the paper."""
     settings: dict[str, Any] = {}
@@ -211,6 +215,19 @@ class Job(Table, frozen=True):
             raise ValueError('start.pose = "reference" needs a [reference]')
         _check_range(self.frames, "frames")
 
+    @property
+    def chosen_filter(self) -> FilterInput:
+        """The filter with `auto` decided: guided with several cameras, annealed, all of the body at once, with one.
+
+        papers/du-2005, tables E1-ring and E1-side: a contour seen from one side has too many peaks to climb.
+        """
+        if self.filter.name != AUTO:
+            return self.filter
+        if len(self.cameras) > 1:
+            return msgspec.structs.replace(self.filter, name="guided")
+        own = {"particles": 500, "layers": 10, "by_limb": False} if self.filter.preset == "working" else {}
+        return msgspec.structs.replace(self.filter, name="annealed", settings={**own, **self.filter.settings})
+
 
 # The file reads in the order in which a person thinks of it, whatever order the fields need.
 ORDER = (
@@ -266,12 +283,12 @@ def filter_config(job: Job) -> Any:
     """The Config of the job's filter method: its preset, with the job's settings in place of the preset's."""
     from muybridge.filters import METHODS
 
-    name = job.filter.name
-    if name not in METHODS:
-        raise _tables.unknown("filter.name", name, list(METHODS))
-    method = METHODS[name]
-    preset = method.PRINTED if job.filter.preset == "printed" else method.WORKING
-    return _tables.replaced(preset, job.filter.settings, f"filter {name}")
+    chosen = job.chosen_filter
+    if chosen.name not in METHODS:
+        raise _tables.unknown("filter.name", chosen.name, [AUTO, *METHODS])
+    method = METHODS[chosen.name]
+    preset = method.PRINTED if chosen.preset == "printed" else method.WORKING
+    return _tables.replaced(preset, chosen.settings, f"filter {chosen.name}")
 
 
 def background_config(camera: CameraInput) -> Any:

@@ -128,7 +128,7 @@ class _Run:
         rig = Rig(tuple(rig[eye.camera.name] for eye in eyes.eyes))
         spread = SpreadConfig() if self.job.body.fit else MEASURED
         config = TrackerConfig(
-            self.job.filter.name, filter_config(self.job), self._motion(), spread=spread, guess=self.job.guess.when
+            self.job.chosen_filter.name, filter_config(self.job), self._motion(), spread=spread, guess=self.job.guess.when
         )
         model = ImageLikelihood(body, rig, eyes.reductions, cues=self.cues)
         return Tracker(model, self._interval(eyes), config, guesser_of_job(self.job, model))
@@ -136,7 +136,7 @@ class _Run:
     def _motion(self) -> Motion:
         """The method's own, with the job's settings in place of it."""
         given = {name: value for name, value in msgspec.to_builtins(self.job.motion).items() if value is not None}
-        return replace(motion_of(self.job.filter.name, len(self.job.cameras)), **given)
+        return replace(motion_of(self.job.chosen_filter.name, len(self.job.cameras)), **given)
 
     def _track(self, eyes: Eyes, tracker: Tracker, checkpoint: Checkpoint | None) -> None:
         """The loop over frames."""
@@ -216,7 +216,7 @@ class _Run:
         evaluations = self.evaluations / max(1, self.frames)
         summary = RunSummary(status, self.frames, self.job.seed, evaluations, times, memory)
         settings = {
-            "filter": {"name": self.job.filter.name, **asdict(filter_config(self.job))},
+            "filter": {"name": self.job.chosen_filter.name, **asdict(filter_config(self.job))},
             "motion": asdict(tracker.motion),
             "likelihood": asdict(self.cues),
             "reductions": list(tracker.model.reductions),

@@ -36,7 +36,6 @@ if TYPE_CHECKING:
 VIEWS = {"ring": "three cameras", "side": "one camera from the side"}
 REFERENCE = "DE-MC 500 x 7"
 PRINTED_SEEDS, CURVE_SEEDS = 3, 3  # three cues cost ten times a silhouette; curves have seven budgets
-DEFAULT = "guided (default)"
 
 
 def conditions(clip: Clip) -> dict[str, Trial]:
@@ -45,7 +44,7 @@ def conditions(clip: Clip) -> dict[str, Trial]:
     found["annealed, limb by limb, 5000"] = at_budget("annealed", clip, 5000)
     found["DE-MC, long chains, 3500"] = at_budget("demc", clip, 3500)
     found["tempered 500 x 10"] = working("tempered", clip)
-    found[DEFAULT] = working("guided", clip)
+    found["guided"] = working("guided", clip)
     return found
 
 

@@ -138,8 +138,11 @@ def pose_at(evidence: Evidence, frame: int) -> np.ndarray:
 def angle_cases(scale: Scale) -> Iterator[Case]:
     """Walking seen from the side by DE-MC 500 x 7 and the default filter; the same walk by three cameras."""
     side, ring = side_walk(scale), scale.walks(seeds=1)[0]
-    for seen, clip in (("one camera", side), ("three cameras", ring)):
-        for label, trial in (("DE-MC 500 x 7", at_shape("demc", clip)), ("default filter", working("guided", clip))):
+    for seen, clip, default in (
+        ("one camera", side, at_shape("annealed", side)),
+        ("three cameras", ring, working("guided", ring)),
+    ):
+        for label, trial in (("DE-MC 500 x 7", at_shape("demc", clip)), ("default filter", default)):
             yield Case(f"{label}, {seen}", replace(trial, clip=clip, seed=clip.seed, keep_track=True))
 
 

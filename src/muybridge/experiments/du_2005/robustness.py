@@ -55,7 +55,8 @@ TARGETS = {
     "1 camera, walking, DE-MC 500 x 7, right body": (100.0, 60.0),
     "1 camera, walking, DE-MC long chains 3500, right body": (100.0, 60.0),
     "1 camera, walking, annealed limb by limb": (80.0, 50.0),
-    "1 camera, walking, default filter": (80.0, 50.0),
+    "1 camera, walking, guided": (80.0, 50.0),
+    "1 camera, walking, default filter (annealed 500 x 10)": (80.0, 50.0),
 }
 
 
@@ -70,6 +71,7 @@ def target_cases(scale: Scale) -> Iterator[Case]:
         (side, at_budget("demc", side[0], 3500)),
         (side, at_budget("annealed", side[0], 5000)),
         (side, working("guided", side[0])),
+        (side, at_shape("annealed", side[0])),
     )
     for label, (clips, trial) in zip(TARGETS, trials, strict=True):
         yield from over(clips, label, trial)

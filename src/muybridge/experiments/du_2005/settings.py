@@ -124,7 +124,7 @@ def search_conditions(clip: Clip) -> dict[str, Trial]:
         "long chains, 60 x 57": at_budget("demc", clip, 3500),
         "annealed 500 x 8, DE-MC's evaluations": at_shape("annealed", clip, layers=8),
         "annealed 500 x 10": at_shape("annealed", clip),
-        "guided (default)": working("guided", clip),
+        "guided": working("guided", clip),
     }
 
 
