@@ -127,9 +127,8 @@ class _Run:
         eyes.eyes = [replace(eye, camera=rig[eye.camera.name]) for eye in eyes.eyes]
         rig = Rig(tuple(rig[eye.camera.name] for eye in eyes.eyes))
         spread = SpreadConfig() if self.job.body.fit else MEASURED
-        config = TrackerConfig(
-            self.job.chosen_filter.name, filter_config(self.job), self._motion(), spread=spread, guess=self.job.guess.when
-        )
+        method, when = self.job.chosen_filter.name, self.job.guess.when
+        config = TrackerConfig(method, filter_config(self.job), self._motion(), spread=spread, guess=when)
         model = ImageLikelihood(body, rig, eyes.reductions, cues=self.cues)
         return Tracker(model, self._interval(eyes), config, guesser_of_job(self.job, model))
 
