@@ -25,6 +25,9 @@ from muybridge.likelihood.silhouette import KINDS, SilhouetteCue
 class CueWeights:
     """Powers of the cues, (5.12); 0 switches a cue off. Only their ratios count: they are made to sum to 1.
 
+    Silhouettes alone are the default, and colour counts by area, by tables E3-paired and E4-colour-alone-paired of
+    papers/du-2005: no cue beside silhouettes makes the error less.
+
     silhouette_kind : a key of `silhouette.KINDS`
     colour_by_area : segments count by their visible area, (5.5), or all alike, (5.3)
     """

@@ -26,7 +26,7 @@ LARGEST_STEP = 0.3  # radians and metres; beyond that a Newton step means nothin
 
 @dataclass(frozen=True)
 class SpreadConfig:
-    """What the reported standard deviations are made of; docs/benchmarks.md says how true they are."""
+    """What the reported standard deviations are made of; how true they are: table coverage of papers/du-2005."""
 
     contour_m: float = 0.025  # spread of the contour's robust weights
     dependence: float = 5.0  # so many neighbouring residuals err together
