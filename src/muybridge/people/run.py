@@ -126,7 +126,7 @@ def run(
     try:
         for index, _, picture in prefetched(pictures.frames(), READ_AHEAD):
             begun = time.perf_counter()
-            small = reduce_image(picture, factor)
+            small = masks.relit(reduce_image(picture, factor))
             tracker.step(index, small, masks.apply(small))
             times.append(1e3 * (time.perf_counter() - begun))
             progress(index + 1, len(pictures), f"{len(tracker.people)} people")
@@ -150,7 +150,7 @@ def look_over(
     masks = Masks.train([reduce_image(pictures.read(index), factor) for index in chosen], config.masks)
     seen = []
     for count, index in enumerate(moments, start=1):
-        seen.append(masks.apply(reduce_image(pictures.read(index), factor)))
+        seen.append(masks.apply(masks.relit(reduce_image(pictures.read(index), factor))))
         progress(count, len(moments), "looking over the clip")
     return masks, describe(
         masks.empty, seen, person_blobs(config), reduced_mask(occluders, pictures.size, masks.empty.shape)
