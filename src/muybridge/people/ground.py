@@ -21,7 +21,8 @@ from muybridge.people.blobs import Blob
 FEWEST = 12  # regions; fewer say nothing about a line
 TRIALS, ROUNDS = 300, 8  # of the robust fit: pairs tried, refinements
 NEAR = 0.1  # of the expected height: what agrees with a line; people differ by 4 % (standard deviation), masks by more
-SAME = 3  # pixels: regions of which no side differs by more are one thing that stands, seen again
+ABOVE = 0.5  # of a vote, against a line, of each region well above it: one that is two people, or the line is too low
+SAME = 3  # pixels: regions whose lower left corners are nearer are one that stands, seen again
 SHORTEST = 8.0  # pixels, whatever the line says
 UPRIGHT = (0.15, 0.7)  # width over height of what may be one standing person
 
@@ -73,14 +74,12 @@ class GroundScale:
 def fit_ground(blobs: Sequence[Blob], picture: tuple[int, int]) -> GroundScale | None:
     """The line most regions agree on, of a picture (width, height); None where too few look like standing people.
 
-    Regions that touch a side of the picture are cut off and say nothing. What stands counts once, however long.
+    Regions that touch a side of the picture are cut off and say nothing.
     """
     whole = [blob.box for blob in blobs if not touches_side(blob, picture)]
     boxes = np.array(whole).reshape(-1, 4)
-    _, first = np.unique(np.rint(boxes / SAME), axis=0, return_index=True)
-    boxes = boxes[np.sort(first)]
     shape = boxes[:, 2] / np.maximum(boxes[:, 3], 1)
-    boxes = boxes[(shape > UPRIGHT[0]) & (shape < UPRIGHT[1])]
+    boxes = _once(boxes[(shape > UPRIGHT[0]) & (shape < UPRIGHT[1])])
     if len(boxes) < FEWEST:
         return None
     feet, heights = boxes[:, 1] + boxes[:, 3] - 0.5, boxes[:, 3]
@@ -100,11 +99,19 @@ def touches_side(blob: Blob, picture: tuple[int, int]) -> bool:
     return bool(left <= 0 or top <= 0 or left + width >= picture[0] or top + height >= picture[1])
 
 
+def _once(boxes: FloatArray) -> FloatArray:
+    """Boxes (N, 4) without those of somebody who stands there already: the narrowest stays, alone more likely."""
+    boxes = boxes[np.argsort(boxes[:, 2], kind="stable")]
+    corners = np.column_stack([boxes[:, 0], boxes[:, 1] + boxes[:, 3]])
+    _, first = np.unique(np.rint(corners / SAME), axis=0, return_index=True)
+    return boxes[np.sort(first)]
+
+
 def _agreeing(feet: FloatArray, heights: FloatArray) -> NDArray[np.bool_]:
     """Which lie near the line through some two of them that fits best; people do not shrink towards the camera.
 
-    What is cut short, by a thing in the way or by a hole in the mask, lies below the line, and little above: so each
-    that does counts against it.
+    What is cut short, by a thing in the way or by a hole in the mask, lies below the line, and little above: so what
+    does counts against it.
     """
     rng = np.random.default_rng(0)  # only which pairs are tried
     best = np.ones(len(feet), bool)
@@ -115,7 +122,7 @@ def _agreeing(feet: FloatArray, heights: FloatArray) -> NDArray[np.bool_]:
         offset = heights[a] - slope * feet[a]
         close = _close(feet, heights, offset, slope)
         above = heights > (1 + 2 * NEAR) * np.maximum(SHORTEST, offset + slope * feet)
-        score = float(close.sum()) - float(above.sum())
+        score = float(close.sum()) - ABOVE * float(above.sum())
         if 0 <= slope < 1 and score > most:
             most, best = score, close
     return best

@@ -40,6 +40,7 @@ from muybridge.people.run import (
     ignore,
     person_blobs,
     reduced_mask,
+    write_scene,
 )
 from muybridge.people.scene import Scene
 from muybridge.people.tracker import PeopleTracker
@@ -157,6 +158,8 @@ class _Run:
     def finish(self, status: str) -> PeopleSummary:
         """Write what is left, and run.json."""
         self._settle(self._last)
+        if self._known is not None:
+            write_scene(self.out, self._known[1])
         summary = PeopleSummary(status, self.frames, len(self._identities), self.boxes, self.seed, speed(self._times),
                                 self.frames / (time.perf_counter() - self._started), peak_memory_mb())  # fmt: skip
         facts = {"settings": asdict(self.config), "versions": versions(), "evaluations_per_frame": None}

@@ -51,7 +51,7 @@ class Masks:
 
     @classmethod
     def train(cls, pictures: Sequence[NDArray[np.uint8]], config: MaskConfig | None = None) -> Masks:
-        """From pictures (H, W, 3) uint8 BGR of moments far enough apart that people have moved, in the order of time."""
+        """From pictures (H, W, 3) uint8 BGR in the order of time, far enough apart that people have moved."""
         config = config or MaskConfig()
         usual = median_picture(pictures)
         pictures = [relit(picture, usual) for picture in pictures]

@@ -14,14 +14,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from muybridge.errors import InputError
 from muybridge.evaluation.boxes import overlaps
 from muybridge.filters.particles import FloatArray
 from muybridge.people.blobs import BlobConfig, Mask, find_people
 from muybridge.people.box import PRINTED_VARIANCES, BoxMotion, CountConfig, boxes_from_states, states_from_boxes
-from muybridge.people.colour_likelihood import ColourConfig, ColourTarget, Picture
+from muybridge.people.colour_likelihood import ColourConfig, Picture
 from muybridge.people.detect import Places, find_standing
 from muybridge.people.evidence import Evidence, ForegroundConfig
 from muybridge.people.failure import FailureDetector

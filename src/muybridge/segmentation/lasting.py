@@ -2,8 +2,8 @@
 
 A median takes for empty what is seen most often, and so learns whoever stands for half of the time. But who came and
 went was neither there before nor after, and the floor was. So each pixel takes the colour that lasts: the share of the
-clip between the first time it is seen and the last, plus half of the share of moments that show it, which decides where
-several are seen from beginning to end: the floor, and clothes of one colour that pass early and late.
+clip between the first time it is seen and the last, plus a quarter of the share of moments that show it. The latter
+decides where several are seen from beginning to end: the floor, and clothes of one colour that pass early and late.
 
 What changes and never changes back (a door that opens and stays open) is learnt as it is for the longer time; so is
 somebody who stays until the end, or was there from the beginning.
@@ -23,7 +23,7 @@ from muybridge.segmentation.pictures import median_picture
 TOLERANCE = 14
 """Grey values, in each channel: four to five deviations of a sensor's noise."""
 FEWEST = 3  # moments that show a colour; fewer are chance
-OFTEN = 0.5  # weight of how often against how long
+OFTEN = 0.25  # weight of how often against how long: who stays for up to five sixths of the time is not learnt
 TRIED = 20  # colours a pixel, evenly spread over the moments
 ENOUGH = 8  # moments; of fewer there is only a median
 
