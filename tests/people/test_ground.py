@@ -53,9 +53,9 @@ def test_somebody_who_stands_counts_once() -> None:
 
 
 def test_people_cut_short_do_not_flatten_it(monkeypatch: pytest.MonkeyPatch) -> None:
-    """As many again lack their legs or heads: 70 pixels are left of all, wherever they stand, more alike than people."""
+    """More lack their legs or heads: 70 pixels are left of all, wherever they stand, and so lie near one line."""
     people = [person(feet) for feet in range(180, 470, 6)]
-    cut = [Blob(100, feet - 69, np.ones((70, 24), bool)) for feet in range(180, 470, 6)]
+    cut = [Blob(100, feet - 69, np.ones((70, 24), bool)) for feet in range(180, 470, 5)]
     ground = fit_ground(people + cut, PICTURE)
     assert ground is not None and abs(float(ground.height(400.0)) - 130) < 3.0
     monkeypatch.setattr("muybridge.people.ground.ABOVE", 0.0)
