@@ -25,7 +25,7 @@ class MaskConfig:
     """Settings of the foreground."""
 
     model: str = "plate"  # a name of `segmentation.BACKGROUND_MODELS`
-    threshold: float = 9.0  # of that model; 9 suits `plate` at full resolution
+    threshold: float = 10.0  # of that model; 10 suits `plate` at full resolution
     shadows: bool = True  # whether what looks like a shadow is removed
     close: int = 3  # side of the closing, pixels; 1 leaves it out
     open: int = 3  # of the opening
