@@ -24,6 +24,7 @@ class Walker:
     first: int
     last: int
     clothes: int = 0
+    stature: float = 1.0
 
     def feet(self, frame: int) -> tuple[float, float] | None:
         """Column and row of the feet; None outside the frames."""
@@ -37,7 +38,7 @@ class Walker:
         feet = self.feet(frame)
         if feet is None:
             return None
-        height = OFFSET + SLOPE * feet[1]
+        height = self.stature * (OFFSET + SLOPE * feet[1])
         return np.array([feet[0] - ASPECT * height / 2, feet[1] - height, ASPECT * height, height])
 
 

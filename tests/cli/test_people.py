@@ -10,11 +10,13 @@ import numpy as np
 import pytest
 
 from made_people import Walker, empty_scene, picture_of, truth_of
+from muybridge.cameras import Rig, write_rig
 from muybridge.cli import app
 from muybridge.io.boxes import BoxSeries
 from muybridge.io.mot import write_mot
 from muybridge.io.video import open_pictures
 from muybridge.people.marks import Marks, write_marks
+from muybridge.synthetic.rigs import looking_at
 
 EMPTY = empty_scene()
 WALKERS = [Walker((10, 150), (310, 150), 0, 29, 0), Walker((310, 200), (10, 200), 5, 34, 1)]
@@ -49,14 +51,17 @@ def pictures(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def test_a_folder_of_pictures(pictures: Path, tmp_path: Path, capfd: pytest.CaptureFixture) -> None:
-    out = tmp_path / "out"
-    assert (
-        app.run(["people", str(pictures), "--out", str(out), "--frame-rate", "10", "--quiet", "--json", *OPTIONS]) == 0
-    )
+    out, calibration = tmp_path / "out", tmp_path / "camera.json"
+    camera = looking_at("hall", np.array([-4.0, 0.0, 3.2]), np.array([1.6, 0.0, 0.8]), focal=288.0, size=(320, 240))
+    write_rig(calibration, Rig((camera,)))
+    options = ["--frame-rate", "10", "--calibration", str(calibration), "--quiet", "--json", *OPTIONS]
+    assert app.run(["people", str(pictures), "--out", str(out), *options]) == 0
     said, complaints = capfd.readouterr()
     record = json.loads(said)
     assert not complaints and record["frames"] == FRAMES and record["people"] == 2 and record["status"] == "done"
-    assert sorted(path.name for path in out.iterdir()) == ["parts.csv", "people.mp4", "run.json", "tracks.txt"]
+    assert sorted(path.name for path in out.iterdir()) == [
+        "ground.csv", "map.png", "parts.csv", "paths.png", "people.mp4", "run.json", "scene.png", "tracks.txt"
+    ]  # fmt: skip
     with open_pictures(out / "people.mp4") as video:
         assert video.frame_count == FRAMES and video.frame_rate == 10
 
@@ -107,7 +112,8 @@ def test_pictures_as_a_camera(pictures: Path, tmp_path: Path, capfd: pytest.Capt
     assert app.run(["people", str(pictures), "--out", str(out), "--marks", str(tmp_path / "marks"), *options]) == 0
     record = json.loads(capfd.readouterr().out.splitlines()[-1])
     assert record["frames"] == 31 and record["stream"]["dropped"] == 0
-    assert sorted(path.name for path in out.iterdir()) == ["parts.csv", "run.json", "tracks.txt"]
+    written = ["parts.csv", "paths.png", "run.json", "scene.png", "tracks.txt"]
+    assert sorted(path.name for path in out.iterdir()) == written
     assert json.loads((out / "run.json").read_text())["settings"]["tracker"]["smallest"] == 31
 
 

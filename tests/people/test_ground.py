@@ -43,6 +43,31 @@ def test_who_is_cut_off_says_nothing() -> None:
     assert fit_ground(people + cut, PICTURE) == fit_ground(people, PICTURE)
 
 
+def test_somebody_who_stands_counts_once() -> None:
+    """Somebody stands in row 300 while others pass behind: mostly one region with them, up to half as tall again."""
+    people = [person(feet) for feet in range(60, 470, 10)]
+    standing = [Blob(200, 301 - height, np.ones((height, 45), bool)) for height in range(110, 150)]
+    assert fit_ground(people + standing, PICTURE) is not None
+    ground = fit_ground([*people, *standing, person(300, x=200)], PICTURE)
+    assert ground is not None and abs(float(ground.height(300.0)) - 100) < 1.0
+
+
+def test_people_cut_short_do_not_flatten_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    """More lack their legs or heads: 70 pixels are left of all, wherever they stand, and so lie near one line."""
+    people = [person(feet) for feet in range(180, 470, 6)]
+    cut = [Blob(100, feet - 69, np.ones((70, 24), bool)) for feet in range(180, 470, 5)]
+    ground = fit_ground(people + cut, PICTURE)
+    assert ground is not None and abs(float(ground.height(400.0)) - 130) < 3.0
+    monkeypatch.setattr("muybridge.people.ground.ABOVE", 0.0)
+    flat = fit_ground(people + cut, PICTURE)
+    assert flat is not None and float(flat.height(400.0)) < 90  # negative control: most lie near a level line
+
+
+def test_a_child_on_the_same_ground() -> None:
+    ground = GroundScale(10.0, 0.3, 0.4)
+    np.testing.assert_allclose(ground.of_stature(0.7).height(200.0), 0.7 * ground.height(200.0))
+
+
 def test_too_few_say_nothing() -> None:
     assert fit_ground([person(feet) for feet in range(100, 200, 10)], PICTURE) is None
     assert fit_ground([], PICTURE) is None

@@ -168,8 +168,7 @@ class TestChanges:
             return (walk(frame) * 0.5).astype(np.uint8) if frame >= 70 else walk(frame)
 
         run_live(Made(darker, FRAMES), tmp_path, CONFIG)
-        (event,) = events(tmp_path)
-        assert event["frame"] == 75 and "factor of 0.5" in event["what"]
+        assert not events(tmp_path)
         boxes = read_boxes(tmp_path / "tracks.txt")
         for found in identities(boxes, LATE[:2], 100):
             assert found[10] != 0 and found.count(found[10]) >= 0.6 * len(found)

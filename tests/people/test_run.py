@@ -75,7 +75,7 @@ def test_the_folder(folder: Path) -> None:
     assert set(parts.names) == {"head", "torso", "hip_leg"}
     rows = set(zip(boxes.frames.tolist(), boxes.ids.tolist()))
     assert set(zip(parts.frames.tolist(), parts.ids.tolist())) <= rows and len(parts) > 2 * len(boxes)
-    assert sorted(path.name for path in folder.iterdir()) == ["parts.csv", "run.json", "tracks.txt"]
+    assert sorted(path.name for path in folder.iterdir()) == ["parts.csv", "run.json", "scene.png", "tracks.txt"]
 
 
 def test_half_the_rows_give_the_same_people(clip: Path, folder: Path) -> None:

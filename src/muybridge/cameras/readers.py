@@ -81,6 +81,14 @@ def read_rig(
     return Rig(tuple(cameras if up == "z" else (camera.in_world(TO_Z_UP[up]) for camera in cameras)))
 
 
+def read_camera(path: Path) -> Camera:
+    """The one camera of a calibration file, in metres and with z up; a file of several is refused."""
+    rig = read_rig(path)
+    if len(rig) != 1:
+        raise InputError(str(path), expected="one camera", got=f"{len(rig)}: {', '.join(rig.names)}")
+    return rig[0]
+
+
 def _read(kind: str, files: list[Path], unit: str | None, size: tuple[int, int] | None) -> list[Camera]:
     if kind == "toml":
         return read_opencv_toml(files, unit)

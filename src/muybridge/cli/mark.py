@@ -93,10 +93,7 @@ def _drawn(picture, out: Path, marks: Marks, port: int, browser: bool, reporting
 
 
 def _calibrated(path: Path, size: tuple[int, int], farthest: float) -> float:
-    from muybridge.cameras.readers import read_rig
+    from muybridge.cameras.readers import read_camera
     from muybridge.people.marks import calibrated_smallest
 
-    rig = read_rig(path)
-    if len(rig) != 1:
-        raise InputError(str(path), expected="one camera", got=f"{len(rig)}: {', '.join(rig.names)}")
-    return calibrated_smallest(rig[0].with_size(*size), farthest)
+    return calibrated_smallest(read_camera(path).with_size(*size), farthest)

@@ -14,9 +14,12 @@ from muybridge.cli.track import Overrides
 from muybridge.errors import InputError
 
 if TYPE_CHECKING:
+    from muybridge.cameras.model import Camera
     from muybridge.io.boxes import BoxSeries
     from muybridge.people.blobs import Mask
     from muybridge.people.run import PeopleConfig
+
+PATHS_FILE, MAP_FILE = "paths.png", "map.png"
 
 
 def people(
@@ -29,6 +32,7 @@ def people(
     frame_rate: float | None = None,
     occluders: Path | None = None,
     marks: Path | None = None,
+    calibration: Path | None = None,
     set_: Overrides = None,
     overlay: bool = True,
     live: Switch = False,
@@ -44,7 +48,7 @@ def people(
         A video, a folder of numbered pictures, or a pattern such as 'frame%04d.jpg'; or a camera as it runs: a webcam's
         number, or an address such as rtsp://HOST/PATH.
     out
-        Where tracks.txt, parts.csv, run.json and people.mp4 go; runs/NAME where absent.
+        Where tracks.txt, parts.csv, run.json and pictures go; runs/NAME where absent.
     truth
         Boxes to compare with: MOTChallenge text (gt.txt) or CAVIAR's XML.
     seed
@@ -55,10 +59,12 @@ def people(
         A picture that is white where something always stands before people; what is found by itself is added.
     marks
         A folder that `muybridge mark` wrote: such a picture, and how small the smallest people are.
+    calibration
+        The camera's; then ground.csv and map.png say where people walk on the floor, z = 0, in metres.
     set_
         One setting, KEY=VALUE, such as tracker.smallest=60; may be repeated.
     overlay
-        Draw the tracks over the pictures; of a camera there are none left to draw on.
+        Draw the tracks over the pictures; of a camera there are none left to draw on. paths.png is drawn anyway.
     live
         Treat a video or pictures as a camera: learn the scene on the way, and keep nothing.
     seconds
@@ -66,6 +72,7 @@ def people(
     show
         Of a camera: a window with what is seen; needs an OpenCV that has windows.
     """
+    from muybridge.cameras.readers import read_camera
     from muybridge.io.boxes import read_boxes
     from muybridge.io.live import is_live
     from muybridge.io.video import open_pictures
@@ -79,10 +86,12 @@ def people(
     true_boxes = None if truth is None else read_boxes(truth)
     if true_boxes is not None:
         _check_scorer()
+    camera = None if calibration is None else read_camera(calibration)
     hidden = marked if occluders is None else _white(occluders)
     out = out or Path("runs") / (_stem(video) or "people")
     if live or is_live(video):
-        return _watch(video, out, config, seed, frame_rate, seconds, hidden, true_boxes, show, reporting)
+        _watch(video, out, config, seed, frame_rate, seconds, hidden, true_boxes, camera, show, reporting)
+        return
     for name, asked in (("--seconds", seconds is not None), ("--show", show)):
         if asked:
             raise InputError(name, expected="a camera, or --live", got=video)
@@ -92,6 +101,7 @@ def people(
                 summary = run(pictures, out, config, seed=seed, occluders=hidden, progress=progress)
             reporting.say(f"{summary.frames} frames, {summary.people} people, {summary.frames_per_second:.1f} frames/s")
             drawn = _draw(out, pictures, reporting) if overlay else None
+            _draw_paths(out, pictures.size, camera)
     except KeyboardInterrupt:
         raise KeyboardInterrupt(f"interrupted; what was finished is kept in {out}") from None
     scores = {} if true_boxes is None else _score(out, true_boxes, reporting)
@@ -108,6 +118,7 @@ def _watch(
     seconds: float | None,
     hidden: Mask | None,
     truth: BoxSeries | None,
+    camera: Camera | None,
     show: bool,
     reporting: Reporting,
 ) -> None:
@@ -135,6 +146,7 @@ def _watch(
                                watcher=window)  # fmt: skip
         except KeyboardInterrupt:
             raise KeyboardInterrupt(f"interrupted; what was finished is kept in {out}") from None
+    _draw_paths(out, stream.size, camera)
     facts = stream.facts()
     lost = f"{facts['dropped']} dropped, {facts['reconnects']} reconnects"
     reporting.say(f"{summary.frames} frames, {lost}, {summary.people} people; {facts['ended']}")
@@ -184,6 +196,32 @@ def _draw(out: Path, pictures: Any, reporting: Reporting) -> Path:
         return write_people_video(
             out, pictures, read_mot(out / TRACKS_FILE), read_parts(out / PARTS_FILE), progress=progress
         )
+
+
+def _draw_paths(out: Path, size: tuple[int, int], camera: Camera | None) -> None:
+    """Everybody's way over the empty scene; and on the ground, where the camera is known."""
+    import cv2
+
+    from muybridge.io.disk import replace_file
+    from muybridge.io.mot import read_mot
+    from muybridge.io.video import read_image
+    from muybridge.people.on_ground import GROUND_FILE, on_ground, write_ground
+    from muybridge.people.run import SCENE_FILE, TRACKS_FILE
+    from muybridge.plotting.people_paths import draw_paths, plot_ground_map
+    from muybridge.plotting.style import new_figure, to_png
+
+    if not (out / SCENE_FILE).exists():  # a stream that ended before its scene was known
+        return
+    boxes = read_mot(out / TRACKS_FILE)
+    scene = cv2.resize(read_image(out / SCENE_FILE), size, interpolation=cv2.INTER_LINEAR)
+    replace_file(out / PATHS_FILE, cv2.imencode(".png", draw_paths(scene, boxes))[1].tobytes())
+    if camera is None:
+        return
+    places = on_ground(boxes, camera.with_size(*size))
+    write_ground(out / GROUND_FILE, boxes, places)
+    figure, axes = new_figure(width=6.0, height=6.0)
+    plot_ground_map(axes[0, 0], boxes.ids, places)
+    replace_file(out / MAP_FILE, to_png(figure))
 
 
 def _score(out: Path, truth: BoxSeries, reporting: Reporting) -> dict[str, Any]:

@@ -9,7 +9,7 @@ Not in Zhao (2009), who sets thresholds by hand for each camera (5.1).
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +21,8 @@ from muybridge.people.blobs import Blob
 FEWEST = 12  # regions; fewer say nothing about a line
 TRIALS, ROUNDS = 300, 8  # of the robust fit: pairs tried, refinements
 NEAR = 0.1  # of the expected height: what agrees with a line; people differ by 4 % (standard deviation), masks by more
+ABOVE = 0.5  # of a vote, against a line, of each region well above it: one that is two people, or the line is too low
+SAME = 3  # pixels: regions whose lower left corners are nearer are one that stands, seen again
 SHORTEST = 8.0  # pixels, whatever the line says
 UPRIGHT = (0.15, 0.7)  # width over height of what may be one standing person
 
@@ -53,6 +55,10 @@ class GroundScale:
         """Expected heights, pixels, for rows of feet, of the same shape; at least `SHORTEST`."""
         return np.maximum(SHORTEST, self.offset + self.slope * np.asarray(feet, dtype=np.float64))
 
+    def of_stature(self, stature: float) -> GroundScale:
+        """The same for somebody who is so many times as tall as people are on average."""
+        return replace(self, offset=stature * self.offset, slope=stature * self.slope)
+
     def standing(self, x: FloatArray, feet: FloatArray) -> FloatArray:
         """Boxes (N, 4), centre, width, height, of people of the expected size who stand at columns and rows (N,)."""
         height = self.height(feet)
@@ -73,7 +79,7 @@ def fit_ground(blobs: Sequence[Blob], picture: tuple[int, int]) -> GroundScale |
     whole = [blob.box for blob in blobs if not touches_side(blob, picture)]
     boxes = np.array(whole).reshape(-1, 4)
     shape = boxes[:, 2] / np.maximum(boxes[:, 3], 1)
-    boxes = boxes[(shape > UPRIGHT[0]) & (shape < UPRIGHT[1])]
+    boxes = _once(boxes[(shape > UPRIGHT[0]) & (shape < UPRIGHT[1])])
     if len(boxes) < FEWEST:
         return None
     feet, heights = boxes[:, 1] + boxes[:, 3] - 0.5, boxes[:, 3]
@@ -93,17 +99,32 @@ def touches_side(blob: Blob, picture: tuple[int, int]) -> bool:
     return bool(left <= 0 or top <= 0 or left + width >= picture[0] or top + height >= picture[1])
 
 
+def _once(boxes: FloatArray) -> FloatArray:
+    """Boxes (N, 4) without those of somebody who stands there already: the narrowest stays, alone more likely."""
+    boxes = boxes[np.argsort(boxes[:, 2], kind="stable")]
+    corners = np.column_stack([boxes[:, 0], boxes[:, 1] + boxes[:, 3]])
+    _, first = np.unique(np.rint(corners / SAME), axis=0, return_index=True)
+    return boxes[np.sort(first)]
+
+
 def _agreeing(feet: FloatArray, heights: FloatArray) -> NDArray[np.bool_]:
-    """Which lie near the line through some two of them that most lie near; people do not shrink towards the camera."""
+    """Which lie near the line through some two of them that fits best; people do not shrink towards the camera.
+
+    What is cut short, by a thing in the way or by a hole in the mask, lies below the line, and little above: so what
+    does counts against it.
+    """
     rng = np.random.default_rng(0)  # only which pairs are tried
     best = np.ones(len(feet), bool)
-    most = 0
+    most = 0.0
     for a, b in rng.integers(0, len(feet), (TRIALS, 2)):
         span = feet[b] - feet[a]
         slope = 0.0 if abs(span) < 1 else (heights[b] - heights[a]) / span
-        close = _close(feet, heights, heights[a] - slope * feet[a], slope)
-        if 0 <= slope < 1 and close.sum() > most:
-            most, best = int(close.sum()), close
+        offset = heights[a] - slope * feet[a]
+        close = _close(feet, heights, offset, slope)
+        above = heights > (1 + 2 * NEAR) * np.maximum(SHORTEST, offset + slope * feet)
+        score = float(close.sum()) - ABOVE * float(above.sum())
+        if 0 <= slope < 1 and score > most:
+            most, best = score, close
     return best
 
 

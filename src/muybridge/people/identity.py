@@ -186,6 +186,7 @@ def exchange(a: Person, b: Person, frame: int) -> None:
     """Give each what the other was up to a frame: identity, look and sightings. Where they are now stays."""
     a.identity, b.identity = b.identity, a.identity
     a.look, b.look = b.look, a.look
+    a.stature, b.stature = b.stature, a.stature
     a.last_clear, b.last_clear = b.last_clear, a.last_clear
     a.parts = b.parts = None  # to be cut anew
     before = [[sighting for sighting in person.sightings if sighting.frame <= frame] for person in (a, b)]

@@ -128,18 +128,12 @@ class SceneLearner:
         self._due = time + float(np.clip(time - self._begun, self.config.first_s, self.config.again_s))
         return masks, scene
 
-    def relight(self, gains: NDArray[np.float64]) -> None:
-        """The light has changed: what was seen would now look so much brighter, (3,) factors."""
-        kept = self._pictures.items
-        for index, picture in enumerate(kept):
-            kept[index] = np.clip(picture * gains + 0.5, 0, 255).astype(np.uint8)
-
     def _trained(self) -> Masks:
         return Masks.train(self._pictures.items, self.foreground)
 
     def _seen(self, masks: Masks) -> Sequence[Mask]:
         """Foreground of many moments: as it was seen then, or, with too few of those, of the pictures that are kept."""
         if len(self._masks.items) < len(self._pictures.items):
-            return [masks.apply(picture) for picture in self._pictures.items]
+            return [masks.apply(masks.relit(picture)) for picture in self._pictures.items]
         count = self._shape[0] * self._shape[1]
         return [np.unpackbits(row, count=count).reshape(self._shape).astype(bool) for row in self._masks.items]

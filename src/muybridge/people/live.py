@@ -2,8 +2,8 @@
 
 The folder is that of `people.run`, but tracks.txt and parts.csv grow while the stream runs, some seconds behind it
 (`LearningConfig.settle_s`), and nothing that was written is kept: memory does not grow with the stream. Identities are
-given once. A camera that was moved is a new scene: it is learnt from the beginning, and everybody is somebody new. When
-the light changes everywhere, what was learnt of the empty scene is made as much brighter or darker, and people go on.
+given once. A camera that was moved is a new scene: it is learnt from the beginning, and everybody is somebody new. Each
+picture is brought into the light of the empty scene, so that a lamp which is switched is no change.
 """
 
 from __future__ import annotations
@@ -40,6 +40,7 @@ from muybridge.people.run import (
     ignore,
     person_blobs,
     reduced_mask,
+    write_scene,
 )
 from muybridge.people.scene import Scene
 from muybridge.people.tracker import PeopleTracker
@@ -157,6 +158,8 @@ class _Run:
     def finish(self, status: str) -> PeopleSummary:
         """Write what is left, and run.json."""
         self._settle(self._last)
+        if self._known is not None:
+            write_scene(self.out, self._known[1])
         summary = PeopleSummary(status, self.frames, len(self._identities), self.boxes, self.seed, speed(self._times),
                                 self.frames / (time.perf_counter() - self._started), peak_memory_mb())  # fmt: skip
         facts = {"settings": asdict(self.config), "versions": versions(), "evaluations_per_frame": None}
@@ -211,41 +214,25 @@ class _Run:
 
     def _follow(self, number: int, at: float, picture: Picture) -> None:
         assert self._known is not None and self._watch is not None and self._tracker is not None
-        mask = self._known[0].apply(picture)
-        change = self._watch.step(picture, mask)
+        masks = self._known[0]
+        usual = masks.relit(picture)
+        mask = masks.apply(usual)
+        change = self._watch.step(usual, mask)
         if change:
-            self._change(number, at, picture, change)
+            self._tracker.abandon()
+            self.events.append({"frame": number + 1, "what": f"{change}: the scene is learnt anew"})
+            del self.events[:-1000]  # a camera in the wind must not fill the memory either
+            self._begin(number, at, picture)
         else:
             flooded = float(mask.mean()) > self.config.watch.share  # that is no foreground, and teaches nothing
-            self._tracker.step(number, picture, mask, blind=flooded)
+            self._tracker.step(number, usual, mask, blind=flooded)
             if not flooded:
-                self._see(at, picture, mask)
+                self._see(at, usual, mask)
         self.message = f"{len(self._tracker.people)} people"
         second = max(1, round(self._rate))
         behind = max(self.config.learning.settle_s, self.config.tracker.identity.recall_s)
         if number - self._settled > second * (behind + 1):
             self._settle(number - round(self._rate * behind))
-
-    def _change(self, number: int, at: float, picture: Picture, change: str) -> None:
-        """The light changed, and people go on; or it is another scene."""
-        assert self._learner is not None and self._watch is not None and self._tracker is not None
-        gains = self._watch.gains(picture)
-        if self._watch.shift(picture) == (0.0, 0.0) or "moved" not in change:
-            self._learner.relight(gains)
-            known = self._learner.learn(at, self._known)
-            if known[0].apply(picture).mean() < self.config.watch.share / 2:
-                self._adopt(known, at)
-                self._tracker.step(number, picture, known[0].apply(picture))
-                self._tracker.relight(picture)
-                self._note(number, f"{change}: the light, by a factor of {gains.mean():.2f}")
-                return
-        self._tracker.abandon()
-        self._note(number, f"{change}: the scene is learnt anew")
-        self._begin(number, at, picture)
-
-    def _note(self, number: int, text: str) -> None:
-        self.events.append({"frame": number + 1, "what": text})
-        del self.events[:-1000]  # a camera in the wind must not fill the memory either
 
     def _settle(self, frame: int) -> None:
         """Append what is final."""

@@ -117,7 +117,7 @@ def learnt_smallest(pictures: PictureSource, config: PeopleConfig | None = None)
     masks, scene = look_over(pictures, config, factor)
     heights = []
     for index in moments_of(pictures, config) if scene.ground is not None else ():
-        mask = masks.apply(reduce_image(pictures.read(index), factor))
+        mask = masks.apply(masks.relit(reduce_image(pictures.read(index), factor)))
         for left, top, width, height in (blob.box for blob in find_people(mask, person_blobs(config))):
             inside = left > 0 and top > 0 and left + width < scene.size[0] and top + height < scene.size[1]
             if inside and scene.ground is not None and abs(height / float(scene.ground.height(top + height)) - 1) < 0.1:

@@ -1,4 +1,4 @@
-"""Picture -> foreground of all people: a background model of `segmentation`, then closing and opening.
+"""Picture -> foreground of all people: the light of the empty scene, a background model, closing and opening.
 
 Differences from Zhao (2009), 6.1: the defaults open by 3 x 3, not 5 x 5, which a person of 60 pixels does not survive.
 """
@@ -15,6 +15,8 @@ from numpy.typing import NDArray
 from muybridge.errors import InputError
 from muybridge.people.blobs import Mask
 from muybridge.segmentation import BACKGROUND_MODELS, BackgroundModel, build_background, median_picture
+from muybridge.segmentation.lasting import lasting_picture
+from muybridge.segmentation.relight import relit
 from muybridge.segmentation.shadows import remove_shadows
 
 
@@ -23,8 +25,8 @@ class MaskConfig:
     """Settings of the foreground."""
 
     model: str = "plate"  # a name of `segmentation.BACKGROUND_MODELS`
-    threshold: float = 12.0  # of that model; 12 suits `plate` at full resolution
-    shadows: bool = False  # whether what looks like a shadow is removed
+    threshold: float = 10.0  # of that model; 10 suits `plate` at full resolution
+    shadows: bool = True  # whether what looks like a shadow is removed
     close: int = 3  # side of the closing, pixels; 1 leaves it out
     open: int = 3  # of the opening
 
@@ -49,17 +51,23 @@ class Masks:
 
     @classmethod
     def train(cls, pictures: Sequence[NDArray[np.uint8]], config: MaskConfig | None = None) -> Masks:
-        """From pictures (H, W, 3) uint8 BGR of moments far enough apart that everybody has moved on: their median."""
+        """From pictures (H, W, 3) uint8 BGR in the order of time, far enough apart that people have moved."""
         config = config or MaskConfig()
-        empty = median_picture(pictures)
+        usual = median_picture(pictures)
+        pictures = [relit(picture, usual) for picture in pictures]
+        empty = lasting_picture(pictures)
         known = {field.name for field in fields(BACKGROUND_MODELS[config.model].config)}
         settings: dict[str, Any] = {"threshold": config.threshold} if "threshold" in known else {}
-        # A plate is one picture of the empty scene, which the median is; other models learn from many.
+        # A plate is one picture of the empty scene, which there is now; other models learn from many.
         shown = [empty] if config.model == "plate" else list(pictures)
         return cls(build_background(config.model, shown, **settings), empty, config)
 
+    def relit(self, picture: NDArray[np.uint8]) -> NDArray[np.uint8]:
+        """A picture (H, W, 3) uint8 BGR in the light of the empty scene: as all that looks at people wants it."""
+        return relit(picture, self.empty)
+
     def apply(self, picture: NDArray[np.uint8]) -> Mask:
-        """Foreground (H, W) bool of a picture (H, W, 3) uint8 BGR."""
+        """Foreground (H, W) bool of a picture (H, W, 3) uint8 BGR in the light of the empty scene."""
         import cv2
 
         mask = self.model.apply(picture)

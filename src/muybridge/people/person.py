@@ -22,6 +22,7 @@ from muybridge.people.part_filters import Parts
 TRUST_COLOUR = 0.6  # share of the box that must be visible: below, the histogram is of somebody else
 TRUST_WHOLE = 0.8  # to learn what the person looks like
 ENOUGH_LOOKS = 4  # frames
+SHORTEST, TALLEST = 0.6, 1.25  # of people's mean height: a child of five, and hardly anybody
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,6 +53,8 @@ class Person:
         Of the box now: the share that can be seen, and the share of that which is foreground.
     looks : int
         Frames from which `look` was learnt.
+    stature : float
+        Of people's mean height.
     """
 
     identity: int
@@ -69,8 +72,15 @@ class Person:
     sightings: list[Sighting] = field(default_factory=list)
     look: Look | None = None
     looks: int = 0
+    stature: float = 1.0
     last_clear: Sighting | None = None
     parts: Parts | None = None
+
+    def measure(self, ground: GroundScale, rate: float) -> None:
+        """Learn how tall they are; only while they are clear to see."""
+        body = self.body.box
+        seen = float(body[HEIGHT] / ground.height(feet(body)))
+        self.stature = float(np.clip(self.stature + rate * (seen - self.stature), SHORTEST, TALLEST))
 
     @property
     def missing(self) -> int:
@@ -104,6 +114,7 @@ def follow(
 ) -> None:
     """One frame of the body's filter; `behind` are boxes (>= 4,) of others who are expected further away."""
     body, evidence = person.body, frame.evidence
+    ground = None if ground is None else ground.of_stature(person.stature)
     colour = body.target.observe(frame.picture, frame.background)
     cues: list[Likelihood] = [evidence.observe(usual_area(body.box, ground), behind)]
     if ground is not None:

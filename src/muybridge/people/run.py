@@ -2,6 +2,7 @@
 
 tracks.txt  bodies, as MOTChallenge has them: frame, id, left, top, width, height, confidence, -1, -1, -1
 parts.csv   frame, id, part, left, top, width, height, score
+scene.png   the empty scene, at the size that is worked on
 run.json    status, frames, people, seed, settings, versions, ms_per_frame, peak_memory_mb, what was found of the scene
 
 Frames and pixels count from 1 in both tables. Nothing is written before the end: who somebody is may be known late.
@@ -20,7 +21,7 @@ import numpy as np
 
 from muybridge.errors import InputError
 from muybridge.io._tables import override, replaced, unknown
-from muybridge.io.disk import make_folder
+from muybridge.io.disk import make_folder, replace_file
 from muybridge.io.live import LiveConfig
 from muybridge.io.mot import write_mot
 from muybridge.io.parts import write_parts
@@ -38,7 +39,7 @@ from muybridge.people.tracks import Tracks
 from muybridge.people.watch import WatchConfig
 from muybridge.segmentation.pictures import reduce_image
 
-TRACKS_FILE, PARTS_FILE = "tracks.txt", "parts.csv"
+TRACKS_FILE, PARTS_FILE, SCENE_FILE = "tracks.txt", "parts.csv", "scene.png"
 SMALLEST_SIDE = 32  # pixels: a picture with a shorter side shows nobody
 READ_AHEAD = 4  # frames decoded beside the tracking
 Config = TypeVar("Config")
@@ -126,7 +127,7 @@ def run(
     try:
         for index, _, picture in prefetched(pictures.frames(), READ_AHEAD):
             begun = time.perf_counter()
-            small = reduce_image(picture, factor)
+            small = masks.relit(reduce_image(picture, factor))
             tracker.step(index, small, masks.apply(small))
             times.append(1e3 * (time.perf_counter() - begun))
             progress(index + 1, len(pictures), f"{len(tracker.people)} people")
@@ -150,7 +151,7 @@ def look_over(
     masks = Masks.train([reduce_image(pictures.read(index), factor) for index in chosen], config.masks)
     seen = []
     for count, index in enumerate(moments, start=1):
-        seen.append(masks.apply(reduce_image(pictures.read(index), factor)))
+        seen.append(masks.apply(masks.relit(reduce_image(pictures.read(index), factor))))
         progress(count, len(moments), "looking over the clip")
     return masks, describe(
         masks.empty, seen, person_blobs(config), reduced_mask(occluders, pictures.size, masks.empty.shape)
@@ -170,11 +171,19 @@ def person_blobs(config: PeopleConfig) -> BlobConfig:
 def _write(out: Path, tracks: Tracks, summary: PeopleSummary, config: PeopleConfig, scene: Scene) -> None:
     write_mot(out / TRACKS_FILE, tracks.boxes)
     write_parts(out / PARTS_FILE, tracks.parts)
+    write_scene(out, scene)
     ground = None if scene.ground is None else asdict(scene.ground)
     hidden = 0.0 if scene.occluders is None else float(scene.occluders.mean())
     facts = {"settings": asdict(config), "versions": versions(), "evaluations_per_frame": None}
     found = {"ground": ground, "silhouette": scene.silhouette.share.tolist(), "occluded_share": hidden}
     write_summary(out, {**asdict(summary), **facts, "scene": found})
+
+
+def write_scene(out: Path, scene: Scene) -> None:
+    """The empty scene as a picture."""
+    import cv2
+
+    replace_file(out / SCENE_FILE, cv2.imencode(".png", scene.background)[1].tobytes())
 
 
 def _summary(status: str, tracks: Tracks, times: list[float], took: float, seed: int) -> PeopleSummary:

@@ -14,14 +14,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from muybridge.errors import InputError
 from muybridge.evaluation.boxes import overlaps
 from muybridge.filters.particles import FloatArray
 from muybridge.people.blobs import BlobConfig, Mask, find_people
 from muybridge.people.box import PRINTED_VARIANCES, BoxMotion, CountConfig, boxes_from_states, states_from_boxes
-from muybridge.people.colour_likelihood import ColourConfig, ColourTarget, Picture
+from muybridge.people.colour_likelihood import ColourConfig, Picture
 from muybridge.people.detect import Places, find_standing
 from muybridge.people.evidence import Evidence, ForegroundConfig
 from muybridge.people.failure import FailureDetector
@@ -36,6 +35,7 @@ from muybridge.people.tracks import Tracks, gathered
 
 HIDDEN = 0.3  # share of a box that can be seen; less is called hidden, not lost
 EMPTY, FULL = 0.4, 0.6  # of what a person fills: less, and nobody is there; more, and all of them is
+MEASURED_S = 1.0  # seconds in which somebody's height is learnt
 WALK = 0.6  # heights a second: standard deviation of speeds that are tried for somebody new; a brisk walk is 1
 SAME, APART = 0.6, 0.05  # intersection over union of boxes that may be one person; of people clear of each other
 
@@ -150,13 +150,6 @@ class PeopleTracker:
         self.scene, self._background = scene, to_luma_chroma(scene.background)
         self._places = None if scene.ground is None else Places.on(scene.ground, scene.size, self.config.smallest)
 
-    def relight(self, picture: NDArray[np.uint8]) -> None:
-        """The light has changed: what people look like is learnt anew, of a picture (H, W, 3) uint8 BGR."""
-        luma_chroma = to_luma_chroma(picture)
-        for person in self.people:
-            person.body.target = ColourTarget.learn(luma_chroma, person.body.box, self.config.colour)
-            person.look, person.looks, person.parts = None, 0, None
-
     def abandon(self) -> None:
         """Give everybody up: nothing is where it was."""
         for person in self.people:
@@ -224,6 +217,9 @@ class PeopleTracker:
         alone = self._shared(people).max(axis=1, initial=0.0) < APART
         clear = {person for person, is_alone in zip(people, alone) if is_alone and self._is_whole(person)}
         self._identities.step(frame.picture, frame.number, people, clear, self.gone)
+        for person in clear:
+            if self.scene.ground is not None:
+                person.measure(self.scene.ground, 1 / (1 + MEASURED_S * self._rate))
         for person in people:
             if person in clear and person.parts is None:
                 person.parts = Parts.start(person.rng, person.body.box, frame, self._rules)

@@ -17,6 +17,8 @@ from muybridge.people.parts import PARTS
 if TYPE_CHECKING:
     from muybridge.people.person import Person, Sighting
 
+INSIDE = 0.25  # of a body, in the picture: with less, it is not there
+
 
 @dataclass(frozen=True, eq=False)
 class Tracks:
@@ -26,13 +28,11 @@ class Tracks:
     parts: PartSeries
 
     def inside(self, picture: tuple[int, int]) -> Tracks:
-        """Bodies cut at the sides of a picture (width, height); those of whom nothing is inside are left out."""
+        """Bodies of which at least `INSIDE` is within a picture (width, height); they may reach beyond its sides."""
         low = np.clip(self.boxes.boxes[:, :2], 0, picture)
         high = np.clip(self.boxes.boxes[:, :2] + self.boxes.boxes[:, 2:], 0, picture)
-        cut = np.concatenate([low, high - low], axis=1)
-        keep = np.all(cut[:, 2:] > 0, axis=1)
-        boxes = BoxSeries(self.boxes.frames, self.boxes.ids, cut, self.boxes.confidence).where(keep)
-        return Tracks(boxes, self.parts)
+        keep = (high - low).prod(axis=1) >= INSIDE * self.boxes.boxes[:, 2:].prod(axis=1)
+        return Tracks(self.boxes.where(keep), self.parts)
 
     def scaled(self, factor: float) -> Tracks:
         """In the pixels of pictures `factor` times as large."""

@@ -19,7 +19,6 @@ Picture = NDArray[np.uint8]
 WIDTH = 160  # pixels to which pictures are reduced to find a shift
 SURE = 0.15  # response of the phase correlation, 0..1: below, the pictures do not match at all
 BETTER = 0.05  # by which the correlation of grey values must rise where the pictures are shifted, and a light cannot
-DARK = 20  # grey values: darker places of the empty scene say nothing about the light
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -79,14 +78,6 @@ class SceneWatch:
             return 0.0, 0.0
         scale = picture.shape[1] / self._plate.shape[1]
         return x * scale, y * scale
-
-    def gains(self, picture: Picture) -> NDArray[np.float64]:
-        """(3,) how much brighter each channel is than in the empty scene, where most of it is seen."""
-        bright = (self.empty > DARK).all(axis=2)
-        if not bright.any():
-            return np.ones(3)
-        ratio: NDArray[np.float64] = np.median(picture[bright] / self.empty[bright].astype(np.float64), axis=0)
-        return ratio
 
 
 def _alike(plate: NDArray[np.float32], picture: NDArray[np.float32], x: int, y: int) -> float:

@@ -1,0 +1,45 @@
+"""A lamp that is switched: the picture in the old light again, and people as dark before the floor as they were."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from made_people import HEIGHT, WIDTH, empty_scene
+from muybridge.segmentation.relight import relit
+
+EMPTY = empty_scene()
+COLUMNS = np.linspace(0, 1, WIDTH)[None, :, None]
+DIM = 0.75 - 0.3 * COLUMNS
+"""A lamp at the left is left on: brighter there."""
+
+
+def dimmed(picture: np.ndarray) -> np.ndarray:
+    return np.clip(picture * DIM, 0, 255).astype(np.uint8)
+
+
+def with_people(picture: np.ndarray) -> np.ndarray:
+    """Two, each a sixteenth of the picture, who reflect half of what the floor does."""
+    shown = picture.astype(float)
+    for left in (60, 200):
+        shown[60:180, left : left + 40] *= 0.5
+    return shown.astype(np.uint8)
+
+
+def test_the_old_light() -> None:
+    """Rounding down to whole values by a gain of 0.45 costs a grey value, which is 2 of the brighter picture; steps of
+    1/64 of an octave 0.5 %, and the slope of the light within a cell 0.4 %, of 150: one more. Together 3."""
+    found = relit(dimmed(EMPTY), EMPTY).astype(float)
+    inner = np.s_[:, 20:-20]  # at the sides windows and means are one-sided
+    assert np.abs(found - EMPTY)[inner].mean() < 3
+    assert np.abs(dimmed(EMPTY).astype(float) - EMPTY).mean() > 50  # negative control
+
+
+def test_people_stay_as_dark_before_the_floor() -> None:
+    before, after = with_people(EMPTY), relit(dimmed(with_people(EMPTY)), EMPTY)
+    person = np.s_[70:170, 65:95]
+    assert abs(float(after[person].mean()) / float(before[person].mean()) - 1) < 0.06
+
+
+def test_a_picture_in_the_same_light_is_itself() -> None:
+    picture = with_people(EMPTY)
+    assert relit(picture, EMPTY) is picture and picture.shape == (HEIGHT, WIDTH, 3)
