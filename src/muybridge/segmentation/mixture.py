@@ -129,8 +129,13 @@ class PixelMixtures:
     @property
     def background(self) -> NDArray:
         """(H, W, C) float32: the mean of each pixel's heaviest component."""
-        heaviest = self.weights.argmax(axis=2)[..., None, None]
-        return np.take_along_axis(self.means, heaviest, axis=2)[:, :, 0]
+        return self.heaviest((slice(None), slice(None)))[0]
+
+    def heaviest(self, at: tuple[slice, slice]) -> tuple[NDArray, NDArray]:
+        """(R, Q, C) float32 each, grey values: mean and deviation of the heaviest components of some rows and columns."""
+        heaviest = self.weights[at].argmax(axis=2)[..., None, None]
+        mean, variance = (np.take_along_axis(of[at], heaviest, axis=2)[:, :, 0] for of in (self.means, self.variances))
+        return mean, np.sqrt(variance)
 
 
 class MixtureBackground:

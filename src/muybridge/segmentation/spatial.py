@@ -44,6 +44,7 @@ from muybridge._kernels.pairs import choose_partners, pair_scores, pair_update
 from muybridge.errors import InputError
 from muybridge.segmentation.cleaning import close_open
 from muybridge.segmentation.gate import Gate, check_patience
+from muybridge.segmentation.light import Light
 from muybridge.segmentation.mixture import ComponentsConfig, PixelMixtures
 from muybridge.segmentation.pictures import check_same_shape, learn_each
 
@@ -71,6 +72,8 @@ class SpatialConfig(ComponentsConfig):
     """Pictures after which foreground is learnt: two minutes at 30 Hz; 0 learns everything at once."""
     rest: int = 50
     """Pictures after which foreground that does not move is learnt, as a door that was opened; 0: not for that."""
+    light: bool = True
+    """Take light that changes over the whole picture out before pixels are judged."""
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -109,6 +112,7 @@ class SpatialBackground:
             Gate((height, width), self.config.patience, self.config.rest),
             np.ones((height, width), bool),
         )
+        self._light = Light(shape, self.config.match)
         choose_partners(self.counts, OFFSETS, 0, 1, self._information, self.partners)
 
     @classmethod
@@ -123,15 +127,15 @@ class SpatialBackground:
 
     def learn(self, image: NDArray) -> None:
         """Learn all of a picture."""
-        self._learn(self._checked(image), self._everything)
+        self._learn(self._relit(self._checked(image)), self._everything)
 
     def score(self, image: NDArray) -> NDArray:
         """(H, W) float32, nats: -log of (3.1) over evenly spread colours; learns nothing."""
-        return self._score(self._checked(image))
+        return self._score(self._relit(self._checked(image)))
 
     def apply(self, image: NDArray) -> NDArray:
         """Foreground (H, W) bool; learns the background of the picture."""
-        picture = self._checked(image)
+        picture = self._relit(self._checked(image))
         mask = close_open(self._score(picture) > self.config.threshold, self.config.closing, self.config.opening)
         self._learn(picture, self._gate.learnt(mask, picture))
         return mask
@@ -154,6 +158,14 @@ class SpatialBackground:
         pair_update(self.counts, self.totals, OFFSETS, mixtures.matched, mixtures.fresh, self.config.pair_rate)
         first = mixtures.seen % RESELECT
         choose_partners(self.counts, OFFSETS, first, RESELECT, self._information, self.partners)
+
+    def _relit(self, picture: NDArray) -> NDArray:
+        """The picture as it would look in the light of the background."""
+        if not self.config.light or not self.mixtures.seen:
+            return picture
+        mean, deviation = self.mixtures.heaviest(self._light.lattice)
+        self._light.field = self._light.measure(picture, mean, deviation)
+        return self._light.taken_out(picture, self._light.field)
 
     def _checked(self, image: NDArray) -> NDArray:
         shape = (*self.mixtures.kept.shape, self.mixtures.means.shape[3])
