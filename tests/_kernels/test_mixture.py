@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from muybridge._kernels.mixture import mixture_densities, mixture_scores, mixture_update
-from muybridge._kernels.pairs import choose_partners, pair_scores, pair_update
+from muybridge._kernels.pairs import NONE, SEVERAL, choose_partners, pair_scores, pair_update
 from muybridge.segmentation.spatial import OFFSETS
 from reference import mixture as literal
 
@@ -66,7 +66,7 @@ def test_background_components() -> None:
 def test_densities_and_scores() -> None:
     found, scores = np.empty((H, W, K), np.float32), np.empty((H, W), np.float32)
     arrays = MADE.weights, MADE.means, MADE.variances, MADE.kept
-    mixture_densities(MADE.image, *arrays, found)
+    mixture_densities(MADE.image, *arrays[1:], found)
     mixture_scores(MADE.image, *arrays, scores)
     for y, x in np.ndindex(H, W):
         kept = np.array([MADE.kept[y, x] >> k & 1 for k in range(K)])
@@ -75,16 +75,17 @@ def test_densities_and_scores() -> None:
         np.testing.assert_allclose(scores[y, x], -np.log(max(MADE.weights[y, x] @ wanted, literal.LEAST)), atol=1e-3)
 
 
-def learnt_pairs(growth_rate: float) -> tuple[np.ndarray, np.ndarray]:
+def learnt_pairs(growth_rate: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     counts, totals = np.zeros((len(OFFSETS), H, W, K, K), np.float32), np.zeros((len(OFFSETS), H, W), np.float32)
+    only = np.full(totals.shape, NONE, np.int8)
     for matched, fresh in MADE.pairs:
-        pair_update(counts, totals, OFFSETS, matched, fresh, growth_rate)
-    return counts, totals
+        pair_update(counts, totals, only, OFFSETS, matched, fresh, growth_rate)
+    return counts, totals, only
 
 
 def test_counts_are_of_components_that_matched_together_since_they_were_made() -> None:
     """With a rate so small that each picture counts one."""
-    counts, totals = learnt_pairs(1e-9)
+    counts, totals, only = learnt_pairs(1e-9)
     (d, (down, right)), (y, x) = next(iter(enumerate(OFFSETS))), (2, 3)
     wanted = np.zeros((K, K))
     for matched, fresh in MADE.pairs:
@@ -100,12 +101,12 @@ def test_counts_are_of_components_that_matched_together_since_they_were_made() -
 
 def test_scores_and_partners() -> None:
     """(3.1): the pixel's own density and those with its two most informative partners."""
-    counts, totals = learnt_pairs(0.02)
+    counts, totals, only = learnt_pairs(0.02)
     information, partners = np.zeros((len(OFFSETS), H, W), np.float32), np.zeros((H, W, 2), np.int8)
-    choose_partners(counts, OFFSETS, 0, 1, information, partners)
+    choose_partners(counts, only, OFFSETS, 0, 1, information, partners)
     found, out = np.empty((H, W, K), np.float32), np.empty((H, W), np.float32)
-    mixture_densities(MADE.image, MADE.weights, MADE.means, MADE.variances, MADE.kept, found)
-    pair_scores(MADE.weights, found, counts, totals, OFFSETS, partners, 4.0, out)
+    mixture_densities(MADE.image, MADE.means, MADE.variances, MADE.kept, found)
+    pair_scores(MADE.weights, found, counts, totals, only, OFFSETS, partners, 4.0, out)
     for y, x in np.ndindex(H, W):
         candidates = {}
         for d, (down, right) in enumerate(OFFSETS):

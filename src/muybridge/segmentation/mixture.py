@@ -105,7 +105,7 @@ class PixelMixtures:
     def densities(self, picture: NDArray) -> NDArray:
         """(H, W, K) float32: the background components' densities over that of evenly spread colours."""
         out = np.empty(self.weights.shape, np.float32)
-        mixture_densities(picture, self.weights, self.means, self.variances, self.kept, out)
+        mixture_densities(picture, self.means, self.variances, self.kept, out)
         return out
 
     def score(self, picture: NDArray) -> NDArray:

@@ -40,7 +40,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from muybridge._kernels.pairs import choose_partners, pair_scores, pair_update
+from muybridge._kernels.pairs import NONE, choose_partners, pair_scores, pair_update
 from muybridge.errors import InputError
 from muybridge.segmentation.cleaning import close_open
 from muybridge.segmentation.gate import Gate, check_patience
@@ -96,6 +96,7 @@ class SpatialBackground:
     ----------
     mixtures : PixelMixtures
     counts : (D, H, W, K, K) float32, and their sums totals (D, H, W): pair d of a pixel is the one at OFFSETS[d]
+    only : (D, H, W) int8: the one combination of a pair that was seen, if it is one
     partners : (H, W, M) int8: 2 d for the neighbour at OFFSETS[d], 2 d + 1 for the one opposite, -1 for none
     """
 
@@ -106,6 +107,7 @@ class SpatialBackground:
         slots = self.config.components
         self.counts = np.zeros((len(OFFSETS), height, width, slots, slots), np.float32)
         self.totals = np.zeros((len(OFFSETS), height, width), np.float32)
+        self.only = np.full(self.totals.shape, NONE, np.int8)
         self.partners = np.full((height, width, self.config.partners), -1, np.int8)
         self._information = np.zeros((len(OFFSETS), height, width), np.float32)
         self._gate, self._everything = (
@@ -113,7 +115,7 @@ class SpatialBackground:
             np.ones((height, width), bool),
         )
         self._light = Light(shape, self.config.match)
-        choose_partners(self.counts, OFFSETS, 0, 1, self._information, self.partners)
+        choose_partners(self.counts, self.only, OFFSETS, 0, 1, self._information, self.partners)
 
     @classmethod
     def train(cls, pictures: Iterable[NDArray], config: SpatialConfig | None = None) -> SpatialBackground:
@@ -142,22 +144,20 @@ class SpatialBackground:
 
     def _score(self, picture: NDArray) -> NDArray:
         out = np.empty(picture.shape[:2], np.float32)
-        self._pair_scores(self.mixtures.densities(picture), out)
-        return out
-
-    def _pair_scores(self, densities: NDArray, out: NDArray) -> None:
-        """Fill out (H, W) float32 with -log of (3.1)."""
         pair_scores(
-            self.mixtures.weights, densities, self.counts, self.totals, OFFSETS, self.partners,
-            self.config.partner_limit, out,
+            self.mixtures.weights, self.mixtures.densities(picture), self.counts, self.totals, self.only, OFFSETS,
+            self.partners, self.config.partner_limit, out,
         )  # fmt: skip
+        return out
 
     def _learn(self, picture: NDArray, learnt: NDArray) -> None:
         mixtures = self.mixtures
         mixtures.learn(picture, learnt)
-        pair_update(self.counts, self.totals, OFFSETS, mixtures.matched, mixtures.fresh, self.config.pair_rate)
+        pair_update(
+            self.counts, self.totals, self.only, OFFSETS, mixtures.matched, mixtures.fresh, self.config.pair_rate
+        )
         first = mixtures.seen % RESELECT
-        choose_partners(self.counts, OFFSETS, first, RESELECT, self._information, self.partners)
+        choose_partners(self.counts, self.only, OFFSETS, first, RESELECT, self._information, self.partners)
 
     def _relit(self, picture: NDArray) -> NDArray:
         """The picture as it would look in the light of the background."""
