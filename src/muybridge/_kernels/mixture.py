@@ -2,7 +2,8 @@
 
 Covariances are diagonal. A slot whose weight is 0 is empty. `kept` has a bit for every component that counts as
 background. Pixels are independent of each other and rows are shared out over threads, so that threads change nothing. Functions of one
-pixel take whole arrays and its place: views would be counted at each pixel, which costs more than what is done there.
+pixel take whole arrays and its place: views would be counted at each pixel, and calls with whole arrays push tens of numbers, which costs more than what is
+done there; so the small ones are inlined.
 """
 
 from __future__ import annotations
@@ -12,28 +13,21 @@ import math
 import numba
 import numpy as np
 
-from muybridge._kernels._jit import kernel, parallel_kernel
+from muybridge._kernels._jit import kernel, parallel_kernel, vector_kernel
 
 TAIL = 16.0
-"""Squared Mahalanobis distance from which on densities fall with the logarithm: far colours keep their order, and
-products of two densities stay above nought."""
+"""Squared Mahalanobis distance from which on densities fall with its TAIL / 2 = 8th power, exp(-TAIL / 2) at first: far
+colours keep their order, and products of two densities stay above nought."""
 MOST_SLOTS = 8
 """Bits of `kept`."""
 LEAST = 1e-37
 """The least density whose logarithm is taken."""
+_TAIL_HEIGHT = np.float32(math.exp(-TAIL / 2.0))
 _PER_RANGE_SQUARED = np.float32(2.0 * math.pi / (256.0 * 256.0))
 _0, _1 = np.float32(0.0), np.float32(1.0)
 
 
-@kernel
-def tailed(distance):
-    """A squared distance, from TAIL on its logarithm in its place."""
-    if distance <= np.float32(TAIL):
-        return distance
-    return np.float32(TAIL) * (_1 + np.float32(math.log(distance * np.float32(1.0 / TAIL))))
-
-
-@kernel
+@vector_kernel
 def squared_distance(image, means, variances, y, x, k):
     """Squared Mahalanobis distance of a pixel's colour to one component."""
     if image.shape[2] == 3:  # written out, with one division
@@ -49,17 +43,23 @@ def squared_distance(image, means, variances, y, x, k):
     return distance
 
 
-@kernel
+@vector_kernel
 def slot_density(image, means, variances, y, x, k):
     """The density (2.2) of a pixel's colour in one component, over that of colours spread evenly over 0..255."""
     spread = _1
     for c in range(image.shape[2]):
         spread *= variances[y, x, k, c] * _PER_RANGE_SQUARED
-    distance = tailed(squared_distance(image, means, variances, y, x, k))
-    return np.float32(math.exp(np.float32(-0.5) * distance)) / np.float32(math.sqrt(spread))
+    distance = squared_distance(image, means, variances, y, x, k)
+    height = _1 / np.float32(math.sqrt(spread))
+    if distance <= np.float32(TAIL):
+        return np.float32(math.exp(np.float32(-0.5) * distance)) * height
+    share = np.float32(TAIL) / distance
+    share *= share
+    share *= share
+    return share * share * _TAIL_HEIGHT * height
 
 
-@kernel
+@vector_kernel
 def best_slot(image, weights, means, variances, y, x, limit):
     """The component nearest to a pixel's colour by Mahalanobis distance (3.4); -1 where all are beyond `limit`."""
     best, least = -1, limit
@@ -71,7 +71,7 @@ def best_slot(image, weights, means, variances, y, x, limit):
     return best
 
 
-@kernel
+@vector_kernel
 def _rank(weights, variances, y, x, k):
     """Squared weight over summed variances."""
     total = variances[y, x, k, 0]
@@ -80,7 +80,7 @@ def _rank(weights, variances, y, x, k):
     return weights[y, x, k] * weights[y, x, k] / total
 
 
-@kernel
+@vector_kernel
 def background_slots(weights, variances, y, x, slot, portion, floor, ranks):
     """Bits of the components that make up the background: the first by weight over deviation that hold `portion`.
 
@@ -93,20 +93,22 @@ def background_slots(weights, variances, y, x, slot, portion, floor, ranks):
     if heavy >= portion and _rank(weights, variances, y, x, slot) > rest * rest / (variances.shape[3] * floor):
         return 1 << slot
     for k in range(weights.shape[2]):
-        ranks[k] = _rank(weights, variances, y, x, k)
-    bits = 0
-    for k in range(weights.shape[2]):
-        if ranks[k] > _0:
-            before = _0
-            for j in range(weights.shape[2]):
-                if ranks[j] > ranks[k]:
-                    before += weights[y, x, j]
-            if before < portion:
-                bits |= 1 << k
+        ranks[k] = _rank(weights, variances, y, x, k) if weights[y, x, k] > _0 else _0
+    bits, held = 0, _0
+    while held < portion:
+        best = 0
+        for k in range(1, weights.shape[2]):
+            if ranks[k] > ranks[best]:
+                best = k
+        if ranks[best] == _0:
+            break
+        ranks[best] = _0
+        held += weights[y, x, best]
+        bits |= 1 << best
     return bits
 
 
-@kernel
+@vector_kernel
 def follow(image, weights, means, variances, y, x, slot, rate, floor):
     """(2.3), (2.4) and (2.5) for the component `slot` that matched; it moves at the rate over its weight."""
     for k in range(weights.shape[2]):

@@ -15,7 +15,7 @@ import math
 import numba
 import numpy as np
 
-from muybridge._kernels._jit import kernel, parallel_kernel
+from muybridge._kernels._jit import kernel, parallel_kernel, vector_kernel
 from muybridge._kernels.mixture import LEAST
 
 _FULL = np.float32(1e30)
@@ -24,14 +24,14 @@ NONE, SEVERAL = -2, -1
 """What `only` says of a pair of which no combination was seen, or more than one."""
 
 
-@kernel
+@vector_kernel
 def _alone(only, size, across):
     """Own and the partner's component of the one combination `only` = first * K + second."""
     first, second = only // size, only % size
     return (second, first) if across else (first, second)
 
 
-@kernel
+@vector_kernel
 def _joint(counts, d, py, px, densities, y, x, qy, qx, across):
     """Sum over combinations of count times both densities; the partner's density alone, by the same counts, second."""
     joint, alone = 0.0, 0.0
@@ -49,7 +49,7 @@ def _joint(counts, d, py, px, densities, y, x, qy, qx, across):
     return joint, alone
 
 
-@kernel
+@vector_kernel
 def _place(partner, offsets, y, x):
     """The pair's number, whether it is read across, and the partner's place."""
     d, across = np.int64(partner >> 1), (partner & 1) == 1
@@ -57,7 +57,7 @@ def _place(partner, offsets, y, x):
     return d, across, y + sign * offsets[d, 0], x + sign * offsets[d, 1]
 
 
-@kernel
+@vector_kernel
 def _partner_density(partner, y, x, densities, counts, totals, only, offsets, least):
     """P(c0, ci) = P(c0 | ci) P(ci), in which P(ci) is at least `least`; 1 where nothing is known."""
     d, across, qy, qx = _place(partner, offsets, y, x)
@@ -115,7 +115,7 @@ def forget(counts, totals, only, d, y, x, first, second):
         only[d, y, x] = NONE
 
 
-@kernel
+@vector_kernel
 def add(counts, totals, only, d, y, x, i, j, growth):
     """(3.5) for the combination that matched; the newest picture's share is one in all, later the rate.
 
@@ -227,7 +227,7 @@ def _over_rows_deviations(image, means, variances, kept, floor, out):
                 out[y, x, k] = largest
 
 
-@kernel
+@vector_kernel
 def _nearest(deviations, y, x):
     """The component of least deviation."""
     best = 0
@@ -237,7 +237,7 @@ def _nearest(deviations, y, x):
     return best
 
 
-@kernel
+@vector_kernel
 def _surprise(counts, totals, only, offsets, partner, deviations, match, limit, y, x, k):
     """-log of how often component k was seen with the one the partner shows now, nats, at most `limit`; 0 where the
     partner shows none or nothing is known."""

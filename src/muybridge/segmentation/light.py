@@ -63,14 +63,16 @@ class Light:
         if usable.sum() < FEWEST:
             return np.zeros_like(self.field)
         given = seen[usable], mean[usable], deviation[usable], self._terms[usable]
-        flat = np.zeros_like(self.field)
-        flat[0] = np.median(np.log(given[0] / given[1]), axis=0)
         none = np.zeros_like(self.field)
-        found = [_fitted(start, *given) for start in (self.field, flat)]
-        shares = [self._explained(field, *given) for field in (none, *found)]
-        best = int(np.argmax(shares[1:]))
-        believed = shares[1 + best] >= max(0.5, shares[0] + GAIN)
-        return found[best] if believed else none
+        best, needed = none, max(0.5, self._explained(none, *given) + GAIN)
+        for start in (self.field, _flat(*given)):
+            if needed > 1.0 - GAIN / 2:  # what is there leaves too little to gain
+                break
+            field = _fitted(start, *given)
+            share = self._explained(field, *given)
+            if share >= needed:
+                best, needed = field, share
+        return best
 
     def taken_out(self, picture: NDArray, field: NDArray) -> NDArray:
         """The picture (H, W, C) uint8 as it would look in the background's light."""
@@ -83,6 +85,13 @@ class Light:
     def _explained(self, field: NDArray, *given: NDArray) -> float:
         """The share of pixels that the background explains."""
         return float((_squared(_divided(field, *given), *given) < self._match**2).mean())
+
+
+def _flat(seen: NDArray, mean: NDArray, deviation: NDArray, terms: NDArray) -> NDArray:
+    """(6, C): one gain for all pixels, the median."""
+    field = np.zeros((terms.shape[1], mean.shape[1]))
+    field[0] = np.median(np.log(seen / mean), axis=0)
+    return field
 
 
 def _divided(field: NDArray, seen: NDArray, mean: NDArray, deviation: NDArray, terms: NDArray) -> NDArray:
