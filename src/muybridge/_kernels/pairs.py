@@ -212,18 +212,30 @@ def _over_rows_choice(information, offsets, first, step, partners):
                 partners[y, x, n] = _most_informative(information, offsets, y, x, partners, n)
 
 
+@vector_kernel
+def _heaviest(weights, y, x):
+    """The component of most weight."""
+    best = 0
+    for k in range(1, weights.shape[2]):
+        if weights[y, x, k] > weights[y, x, best]:
+            best = k
+    return best
+
+
 @parallel_kernel
-def _over_rows_deviations(image, means, variances, kept, floor, out):
+def _over_rows_deviations(image, weights, means, variances, kept, floor, out):
     for row in numba.prange(image.shape[0]):
         y = np.int64(row)
         for x in range(image.shape[1]):
+            known = _heaviest(weights, y, x)
             for k in range(out.shape[2]):
                 largest = np.float32(np.inf)
                 if kept[y, x] >> k & 1:
                     largest = _0
                     for c in range(image.shape[2]):
                         off = np.float32(image[y, x, c]) - means[y, x, k, c]
-                        largest = max(largest, off * off / max(variances[y, x, k, c], floor))
+                        variance = max(min(variances[y, x, k, c], variances[y, x, known, c]), floor)
+                        largest = max(largest, off * off / variance)
                 out[y, x, k] = largest
 
 
@@ -297,16 +309,19 @@ def pair_scores(weights, densities, counts, totals, only, offsets, partners, lim
     _over_rows_scores(weights, densities, counts, totals, only, offsets, partners, math.exp(-limit), out)
 
 
-def slot_deviations(image, means, variances, kept, floor, out):
+def slot_deviations(image, weights, means, variances, kept, floor, out):
     """Squared deviations from each background component, the largest over the channels; infinite for others.
+
+    A pixel's noise is about the same whatever it shows: no component is judged by more than the heaviest one's variance,
+    however wide it was made.
 
     Parameters
     ----------
-    image, means, variances, kept : as for `_kernels.mixture.mixture_densities`
+    image, weights, means, variances, kept : as for `_kernels.mixture.mixture_scores`
     floor : least variance
     out : (H, W, K) float32, filled
     """
-    _over_rows_deviations(image, means, variances, kept, np.float32(floor), out)
+    _over_rows_deviations(image, weights, means, variances, kept, np.float32(floor), out)
 
 
 def pooled_scores(deviations, kept, counts, totals, only, offsets, partners, match, limit, out):

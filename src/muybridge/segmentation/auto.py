@@ -59,8 +59,9 @@ class AutoBackground(SpatialBackground):
         mixtures, config = self.mixtures, self.config
         deviations, out = np.empty(mixtures.weights.shape, np.float32), np.empty(picture.shape[:2], np.float32)
         slot_deviations(
-            picture, mixtures.means, mixtures.variances, mixtures.kept, config.deviation_floor**2, deviations
-        )
+            picture, mixtures.weights, mixtures.means, mixtures.variances, mixtures.kept, config.deviation_floor**2,
+            deviations,
+        )  # fmt: skip
         pooled_scores(
             deviations, mixtures.kept, self.counts, self.totals, self.only, OFFSETS, self.partners,
             config.threshold**2, config.partner_limit, out,

@@ -42,7 +42,7 @@ from numpy.typing import NDArray
 
 from muybridge._kernels.pairs import NONE, choose_partners, pair_scores, pair_update
 from muybridge.errors import InputError
-from muybridge.segmentation.cleaning import close_open
+from muybridge.segmentation.cleaning import beside, close_open
 from muybridge.segmentation.gate import Gate, check_patience
 from muybridge.segmentation.light import Light
 from muybridge.segmentation.mixture import ComponentsConfig, PixelMixtures
@@ -50,6 +50,8 @@ from muybridge.segmentation.pictures import check_same_shape, learn_each
 
 OFFSETS = np.array([(0, 5), (5, 0), (3, 4), (4, -3)], np.int64)
 """(rows, columns), pixels: from a pixel to four of its neighbours; the other four lie opposite. All are 5 away."""
+FRINGE = 2
+"""Pixels around foreground that are not learnt: the opening has taken people's outlines and limbs off the mask."""
 RESELECT = 60
 """Pictures in which the partners of all rows are chosen anew, some rows at each."""
 
@@ -139,7 +141,7 @@ class SpatialBackground:
         """Foreground (H, W) bool; learns the background of the picture."""
         picture = self._relit(self._checked(image))
         mask = close_open(self._score(picture) > self.config.threshold, self.config.closing, self.config.opening)
-        self._learn(picture, self._gate.learnt(mask, picture))
+        self._learn(picture, self._gate.learnt(mask, picture) & ~beside(mask, FRINGE))
         return mask
 
     def _score(self, picture: NDArray) -> NDArray:
