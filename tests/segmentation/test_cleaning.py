@@ -7,7 +7,7 @@ import pytest
 
 from muybridge.errors import InputError
 from muybridge.segmentation import CleaningConfig, clean, near
-from muybridge.segmentation.cleaning import drop_small, fill_holes, keep_near_main
+from muybridge.segmentation.cleaning import beside, drop_small, fill_holes, keep_near_main
 
 
 def body():
@@ -82,3 +82,10 @@ def test_cleaning_a_part_equals_cleaning_the_whole():
         config, box = CleaningConfig(median=1, largest_hole=3, smallest_fragment=4, gap=2), (20.0, 20.0, 30.0, 30.0)
         whole = fill_holes(keep_near_main(drop_small(mask, 4), 2, box), 3)
         assert np.array_equal(clean(mask, config, box), whole)
+
+
+def test_what_lies_beside_a_mask_is_a_border_as_wide_as_asked():
+    mask = body()
+    border = beside(mask, 2)
+    assert not (border & mask).any() and border.sum() == 84 * 24 - 80 * 20
+    assert border[18, 38] and not border[17, 50]

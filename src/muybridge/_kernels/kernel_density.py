@@ -29,7 +29,7 @@ def bandwidths():
 def kernel_table():
     """(LEVELS, 256) float32: the kernel of one channel over the density of evenly spread grey values.
 
-    A normal density to four deviations; beyond, its exponent grows with the logarithm only (`mixture.tailed`).
+    A normal density to four deviations; beyond, its exponent grows with the logarithm only, as in `mixture`.
     """
     width = bandwidths()[:, None]
     squared = (np.arange(256) / width) ** 2

@@ -1,10 +1,14 @@
 """The Gaussian where the background is calm, pairs of pixels where it changes: decided at each pixel, from what it saw.
 
 Zhao (2009, 6.1) finds a single Gaussian better in calm places and the spatial model better where the background
-changes, and leaves the choice to future work. Here the mixture of each pixel is the evidence: a pixel whose heaviest
-component holds `calm` of the weight has one appearance, and that component alone judges it; every other pixel is judged
-by (3.1). Both are measured in nats per colour against evenly spread colours, a Gaussian over one colour and (3.1) over
-1 + 2 M of them, so that one threshold serves both.
+changes, and leaves the choice to future work. Here the mixture of each pixel is the evidence. Where one component holds
+`portion` of the weight, that Gaussian alone judges, by its largest deviation over the channels, as the `gaussian` model
+does. Where there are several, each is asked, and its squared deviation is raised by twice -log P(k | ki) for each
+partner, as a Gaussian's log density is: a component counts less that was not seen with the one, ki, that the partner
+shows now. The least is the score, in standard deviations, so that one threshold serves both.
+
+What (3.1) has and this has not: the partner's own rarity, which widens people, and sums over the channels, which tell
+people from shadows less well than the largest channel does.
 """
 
 from __future__ import annotations
@@ -15,23 +19,21 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from muybridge._kernels.pairs import calm_scores
-from muybridge.errors import InputError
+from muybridge._kernels.pairs import pooled_scores, slot_deviations
 from muybridge.segmentation.pictures import learn_each
-from muybridge.segmentation.spatial import SpatialBackground, SpatialConfig
+from muybridge.segmentation.spatial import OFFSETS, SpatialBackground, SpatialConfig
 
 
 @dataclass(frozen=True)
 class AutoConfig(SpatialConfig):
-    """Settings of the spatial model, and when a pixel is calm."""
+    """Settings of the spatial model, in whose place some mean another thing."""
 
-    calm: float = 0.9
-    """Weight of the heaviest component, 0..1, from which on a pixel is judged by it alone."""
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        if not 0 < self.calm <= 1:
-            raise InputError("auto background calm", expected="above 0, at most 1", got=f"{self.calm:g}")
+    threshold: float = 4.0
+    """Standard deviations."""
+    partner_limit: float = 4.0
+    """Nats: the most that one partner may count."""
+    deviation_floor: float = 4.0
+    """Grey values: the least standard deviation by which a colour is judged, as of the Gaussian model."""
 
 
 class AutoBackground(SpatialBackground):
@@ -50,12 +52,18 @@ class AutoBackground(SpatialBackground):
     @property
     def calm(self) -> NDArray:
         """(H, W) bool: where the Gaussian judges."""
-        heaviest: NDArray = self.mixtures.weights.max(axis=2)
-        return heaviest >= self.config.calm
+        kept: NDArray = self.mixtures.kept
+        return (kept & (kept - 1)) == 0
 
     def _score(self, picture: NDArray) -> NDArray:
-        densities, out = self.mixtures.densities(picture), np.empty(picture.shape[:2], np.float32)
-        self._pair_scores(densities, out)
-        weights, kept = self.mixtures.weights, self.mixtures.kept
-        calm_scores(weights, kept, densities, self.config.calm, 1 + 2 * self.config.partners, out)
+        mixtures, config = self.mixtures, self.config
+        deviations, out = np.empty(mixtures.weights.shape, np.float32), np.empty(picture.shape[:2], np.float32)
+        slot_deviations(
+            picture, mixtures.weights, mixtures.means, mixtures.variances, mixtures.kept, config.deviation_floor**2,
+            deviations,
+        )  # fmt: skip
+        pooled_scores(
+            deviations, mixtures.kept, self.counts, self.totals, self.only, OFFSETS, self.partners,
+            config.threshold**2, config.partner_limit, out,
+        )  # fmt: skip
         return out

@@ -82,6 +82,14 @@ def median(mask: NDArray, side: int) -> NDArray:
     return cv2.medianBlur(mask.astype(np.uint8), side).astype(bool)
 
 
+def beside(mask: NDArray, distance: int) -> NDArray:
+    """(H, W) bool: what is not foreground, but at most so many pixels from it along rows and columns."""
+    import cv2
+
+    side = 2 * distance + 1
+    return cv2.dilate(mask.view(np.uint8), np.ones((side, side), np.uint8)).view(bool) & ~mask
+
+
 def close_open(mask: NDArray, closing: int, opening: int) -> NDArray:
     """Close with a square of side `closing`, then open with one of side `opening` pixels; 1 leaves a step out.
 

@@ -105,7 +105,7 @@ class PixelMixtures:
     def densities(self, picture: NDArray) -> NDArray:
         """(H, W, K) float32: the background components' densities over that of evenly spread colours."""
         out = np.empty(self.weights.shape, np.float32)
-        mixture_densities(picture, self.weights, self.means, self.variances, self.kept, out)
+        mixture_densities(picture, self.means, self.variances, self.kept, out)
         return out
 
     def score(self, picture: NDArray) -> NDArray:
@@ -129,8 +129,13 @@ class PixelMixtures:
     @property
     def background(self) -> NDArray:
         """(H, W, C) float32: the mean of each pixel's heaviest component."""
-        heaviest = self.weights.argmax(axis=2)[..., None, None]
-        return np.take_along_axis(self.means, heaviest, axis=2)[:, :, 0]
+        return self.heaviest((slice(None), slice(None)))[0]
+
+    def heaviest(self, at: tuple[slice, slice]) -> tuple[NDArray, NDArray]:
+        """(R, Q, C) float32 each, grey values: mean and deviation of the heaviest components of some rows and columns."""
+        heaviest = self.weights[at].argmax(axis=2)[..., None, None]
+        mean, variance = (np.take_along_axis(of[at], heaviest, axis=2)[:, :, 0] for of in (self.means, self.variances))
+        return mean, np.sqrt(variance)
 
 
 class MixtureBackground:

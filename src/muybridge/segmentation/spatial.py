@@ -40,15 +40,18 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from muybridge._kernels.pairs import choose_partners, pair_scores, pair_update
+from muybridge._kernels.pairs import NONE, choose_partners, pair_scores, pair_update
 from muybridge.errors import InputError
-from muybridge.segmentation.cleaning import close_open
+from muybridge.segmentation.cleaning import beside, close_open
 from muybridge.segmentation.gate import Gate, check_patience
+from muybridge.segmentation.light import Light
 from muybridge.segmentation.mixture import ComponentsConfig, PixelMixtures
 from muybridge.segmentation.pictures import check_same_shape, learn_each
 
 OFFSETS = np.array([(0, 5), (5, 0), (3, 4), (4, -3)], np.int64)
 """(rows, columns), pixels: from a pixel to four of its neighbours; the other four lie opposite. All are 5 away."""
+FRINGE = 2
+"""Pixels around foreground that are not learnt: the opening has taken people's outlines and limbs off the mask."""
 RESELECT = 60
 """Pictures in which the partners of all rows are chosen anew, some rows at each."""
 
@@ -71,6 +74,8 @@ class SpatialConfig(ComponentsConfig):
     """Pictures after which foreground is learnt: two minutes at 30 Hz; 0 learns everything at once."""
     rest: int = 50
     """Pictures after which foreground that does not move is learnt, as a door that was opened; 0: not for that."""
+    light: bool = True
+    """Take light that changes over the whole picture out before pixels are judged."""
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -93,6 +98,7 @@ class SpatialBackground:
     ----------
     mixtures : PixelMixtures
     counts : (D, H, W, K, K) float32, and their sums totals (D, H, W): pair d of a pixel is the one at OFFSETS[d]
+    only : (D, H, W) int8: the one combination of a pair that was seen, if it is one
     partners : (H, W, M) int8: 2 d for the neighbour at OFFSETS[d], 2 d + 1 for the one opposite, -1 for none
     """
 
@@ -103,13 +109,15 @@ class SpatialBackground:
         slots = self.config.components
         self.counts = np.zeros((len(OFFSETS), height, width, slots, slots), np.float32)
         self.totals = np.zeros((len(OFFSETS), height, width), np.float32)
+        self.only = np.full(self.totals.shape, NONE, np.int8)
         self.partners = np.full((height, width, self.config.partners), -1, np.int8)
         self._information = np.zeros((len(OFFSETS), height, width), np.float32)
         self._gate, self._everything = (
             Gate((height, width), self.config.patience, self.config.rest),
             np.ones((height, width), bool),
         )
-        choose_partners(self.counts, OFFSETS, 0, 1, self._information, self.partners)
+        self._light = Light(shape, self.config.match)
+        choose_partners(self.counts, self.only, OFFSETS, 0, 1, self._information, self.partners)
 
     @classmethod
     def train(cls, pictures: Iterable[NDArray], config: SpatialConfig | None = None) -> SpatialBackground:
@@ -123,37 +131,43 @@ class SpatialBackground:
 
     def learn(self, image: NDArray) -> None:
         """Learn all of a picture."""
-        self._learn(self._checked(image), self._everything)
+        self._learn(self._relit(self._checked(image)), self._everything)
 
     def score(self, image: NDArray) -> NDArray:
         """(H, W) float32, nats: -log of (3.1) over evenly spread colours; learns nothing."""
-        return self._score(self._checked(image))
+        return self._score(self._relit(self._checked(image)))
 
     def apply(self, image: NDArray) -> NDArray:
         """Foreground (H, W) bool; learns the background of the picture."""
-        picture = self._checked(image)
+        picture = self._relit(self._checked(image))
         mask = close_open(self._score(picture) > self.config.threshold, self.config.closing, self.config.opening)
-        self._learn(picture, self._gate.learnt(mask, picture))
+        self._learn(picture, self._gate.learnt(mask, picture) & ~beside(mask, FRINGE))
         return mask
 
     def _score(self, picture: NDArray) -> NDArray:
         out = np.empty(picture.shape[:2], np.float32)
-        self._pair_scores(self.mixtures.densities(picture), out)
-        return out
-
-    def _pair_scores(self, densities: NDArray, out: NDArray) -> None:
-        """Fill out (H, W) float32 with -log of (3.1)."""
         pair_scores(
-            self.mixtures.weights, densities, self.counts, self.totals, OFFSETS, self.partners,
-            self.config.partner_limit, out,
+            self.mixtures.weights, self.mixtures.densities(picture), self.counts, self.totals, self.only, OFFSETS,
+            self.partners, self.config.partner_limit, out,
         )  # fmt: skip
+        return out
 
     def _learn(self, picture: NDArray, learnt: NDArray) -> None:
         mixtures = self.mixtures
         mixtures.learn(picture, learnt)
-        pair_update(self.counts, self.totals, OFFSETS, mixtures.matched, mixtures.fresh, self.config.pair_rate)
+        pair_update(
+            self.counts, self.totals, self.only, OFFSETS, mixtures.matched, mixtures.fresh, self.config.pair_rate
+        )
         first = mixtures.seen % RESELECT
-        choose_partners(self.counts, OFFSETS, first, RESELECT, self._information, self.partners)
+        choose_partners(self.counts, self.only, OFFSETS, first, RESELECT, self._information, self.partners)
+
+    def _relit(self, picture: NDArray) -> NDArray:
+        """The picture as it would look in the light of the background."""
+        if not self.config.light or not self.mixtures.seen:
+            return picture
+        mean, deviation = self.mixtures.heaviest(self._light.lattice)
+        self._light.field = self._light.measure(picture, mean, deviation)
+        return self._light.taken_out(picture, self._light.field)
 
     def _checked(self, image: NDArray) -> NDArray:
         shape = (*self.mixtures.kept.shape, self.mixtures.means.shape[3])
