@@ -27,7 +27,7 @@ DEFAULT = "guided with guesses"
 PRINTED_SEEDS, CURVE_SEEDS, RECOVERY_SEEDS = 3, 3, 5
 PARTICLES = (50, 100, 200, 300, 500, 1000)
 GAP = (30, 89)  # one second at 60 Hz
-RECOVERED = 1.5  # times the usual error
+RECOVERED, STAYS = 1.5, 3  # times the usual error, for so many frames in a row
 
 
 def cases_of_table(scale: Scale) -> Iterator[Case]:
@@ -151,7 +151,7 @@ def report_of_recovery(outcome: Outcome) -> Report:
                      float(back.max()) if back.size else float("nan"), level, len(group)))  # fmt: skip
     notes = (
         f"Frames at 60 Hz after the person is seen again (or from the first) until the error is below {RECOVERED:g} "
-        "times the usual one; usual: the filter's median over the last third of its runs.",
+        f"times the usual one for {STAYS} frames; usual: the filter's median over the last third of its runs.",
     )
     return Report((Table("recovery", "Back on the person", columns, tuple(rows), notes),))
 
@@ -162,10 +162,14 @@ def usual_error(rows: Sequence[Row]) -> float:
 
 
 def frames_to_recover(row: Row, usual: float) -> float:
-    """Frames from the first that shows the person again to the first within 1.5 times the usual error; inf: never."""
+    """Frames from the first that shows the person to the first of `STAYS` within 1.5 times the usual error; inf: never.
+
+    A single one may be luck: the next may be worse for the velocity that the jump was taken for.
+    """
     first = row.case.trial.gap[1] + 1 if row.case.trial.gap else 0
-    good = np.flatnonzero(np.array(row.result.frame_mm[first:]) <= RECOVERED * usual)
-    return float(good[0]) if good.size else float("inf")
+    good = np.array(row.result.frame_mm[first:]) <= RECOVERED * usual
+    stays = np.flatnonzero(np.lib.stride_tricks.sliding_window_view(good, STAYS).all(axis=1))
+    return float(stays[0]) if stays.size else float("inf")
 
 
 def cases_of_angles(scale: Scale) -> Iterator[Case]:
