@@ -53,8 +53,11 @@ def test_without_layers_there_is_one() -> None:
 
 
 def test_frames_to_recover() -> None:
-    """Usual: the median of the last third, 20; back at 30 or less, counted from the first frame after the gap."""
-    frames = (20.0,) * 3 + (400.0,) * 3 + (90.0, 31.0, 29.0) + (20.0,) * 3
+    """Usual: the median of the last third, 20; back at 30 or less, counted from the first frame after the gap.
+
+    A single good frame between two bad ones does not count.
+    """
+    frames = (20.0,) * 3 + (400.0,) * 3 + (20.0, 31.0, 29.0) + (20.0,) * 3
     row = Row(Case("x", Trial(Clip(), gap=(3, 5))), replace(result(), frame_mm=frames))
     assert usual_error([row]) == 20.0
     assert frames_to_recover(row, 20.0) == 2

@@ -225,17 +225,6 @@ class TestBegin:
         assert np.abs(state.particles).max() <= 1.0 and np.abs(state.estimate).max() <= 1.0
 
 
-class TestSigma:
-    def test_is_the_largest_change(self) -> None:
-        states = np.array([[0.0, 1.0], [0.5, 1.0], [0.2, -1.0], [0.4, -1.5]])
-        np.testing.assert_allclose(agp_pf.largest_changes(states), [0.5, 2.0])
-
-    @pytest.mark.parametrize("states", [np.zeros((1, 3)), np.zeros(3)])
-    def test_needs_two_frames(self, states: np.ndarray) -> None:
-        with pytest.raises(InputError, match="training"):
-            agp_pf.largest_changes(states)
-
-
 @pytest.mark.parametrize(("name", "value"), [("alpha", 1.5), ("alpha", -0.1), ("trusted_variance", 0.0)])
 def test_bad_settings(name: str, value: float) -> None:
     with pytest.raises(InputError, match=name):

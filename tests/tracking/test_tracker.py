@@ -7,12 +7,13 @@ up to 53 mm where an arm passes the trunk.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
+from muybridge.filters import Guess
 from muybridge.tracking import Estimate, Tracker, TrackerConfig, TrackState
 from muybridge.tracking.motion import Motion
 from muybridge.tracking.tracker import LIMBS_COAST, ROOT_COAST
@@ -190,3 +191,29 @@ class TestState:
         state = TrackState(state.filter, np.array([0.05, 0.15, 0.05, 0.35]), 0, 5)
         weights = np.array(tracker.weighted(state, np.array([True, True, False, True])).weights)
         np.testing.assert_allclose(weights / weights[0], [1.0, 0.5, 0.0, 0.25])
+
+
+class Knows:
+    """Guesses the pose that is true: in no frame is the guess to blame."""
+
+    def __init__(self, poses: np.ndarray) -> None:
+        self.poses = iter(poses)
+
+    def guess(self, masks: Sequence[np.ndarray]) -> Guess:
+        """Every turn, to a degree; nothing of the place."""
+        turns = next(self.poses)[3:]
+        return Guess(np.ones(1), turns[None], np.full((1, turns.size), np.radians(1.0) ** 2), 3 + np.arange(turns.size))
+
+
+def test_who_was_sought_has_no_velocity(clip) -> None:
+    """From half a metre beside the truth to the truth is no step of the person's: the next frame would be missed."""
+    body, poses, rig, frames = clip
+    tracker = Tracker(likelihood(body, rig), INTERVAL, TrackerConfig("agp-pf"), Knows(poses))
+    rng = np.random.default_rng(0)
+    state = tracker.init(rng, poses[0] + np.array([0.5] + [0.0] * (poses.shape[1] - 1)))
+    away = []
+    for frame in range(3):
+        state, estimate = tracker.step(rng, state, frames[frame])
+        away.append(errors(body, estimate.pose, poses[frame]).mean())
+        assert (state.filter.velocity == 0).all() == (frame == 0)
+    assert max(away) < 2 * PIXEL  # with a velocity the second frame begins 0.25 m beside the person, and is so measured

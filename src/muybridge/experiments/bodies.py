@@ -84,9 +84,8 @@ def fitted(model: ImageLikelihood, observe: Observe, pose: np.ndarray, evidence:
     return fit_body(model, observations, np.array(poses), FitConfig())[0] if poses else model
 
 
-def wrong_pose(body: Body, evidence: Evidence) -> np.ndarray:
-    """(D,) a first pose that is wrong in every way: standing straight, turned round, half a metre beside the truth."""
-    true = start_pose(body, evidence)
+def wrong_pose(body: Body, true: np.ndarray) -> np.ndarray:
+    """(D,) wrong in every way: standing straight, turned round, half a metre beside the true pose (D,)."""
     pose = np.clip(np.zeros_like(true), body.lower, body.upper)
     yaw = body.dof_names.index("root_yaw")
     pose[:3], pose[yaw] = true[:3], true[yaw] + np.pi

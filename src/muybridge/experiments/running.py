@@ -142,7 +142,7 @@ def tracked_in_process(trial: Trial, evidence: Evidence, regressor: SilhouetteRe
     config = TrackerConfig(trial.method, trial.filter_config, trial.motion, spread=spread)
     guesser = None if regressor is None else SilhouetteGuesser.of(regressor, model)
     tracker = Tracker(model, evidence.interval, config, guesser)
-    first = {"truth": pose, "wrong": wrong_pose(model.body, evidence), "guess": None}[trial.begin]
+    first = {"truth": pose, "wrong": wrong_pose(model.body, pose), "guess": None}[trial.begin]
     state = tracker.init(np.random.default_rng([trial.seed, 0, 1]), first, observed(trial, evidence, model, 0))
     estimates, milliseconds, costs = [], [], []
     for frame in range(trial.clip.frames):

@@ -24,8 +24,7 @@ The layers are those of `annealed`. Special cases are settings, `PRESETS`: witho
 anneal.
 
 Differences from the paper: the share may be set (`alpha`) in place of following from the guess's variance; a guess that
-speaks of the place is believed there too. Sigma is the dynamics' own; `largest_changes` measures the printed one. And
-all that `annealed` may differ by.
+speaks of the place is believed there too. Sigma is the dynamics' own. And all that `annealed` may differ by.
 
 Cost: n M likelihood evaluations a frame, and one more for the estimate where that is the mean.
 """
@@ -36,7 +35,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from muybridge.errors import InputError
 from muybridge.filters import annealed
 from muybridge.filters.dynamics import Dynamics, checked_limits, reflect
 from muybridge.filters.guess import Guess, guess_of
@@ -133,15 +131,3 @@ def share_of_guess(guess: Guess | None, config: Config) -> float:
         return config.alpha
     trusted = config.trusted_variance or guess.trusted_variance or PRINTED_TRUST
     return float(np.exp(-guess.variance / trusted))
-
-
-def largest_changes(states: FloatArray) -> FloatArray:
-    """(D,) the largest absolute change between frames of each component of states (T, D): the sd of the printed Sigma.
-
-    Section V-C1, where the states are a training sequence of one activity.
-    """
-    states = np.asarray(states, dtype=np.float64)
-    if states.ndim != 2 or len(states) < 2:
-        raise InputError("training states", expected="shape (T, D) with T of 2 or more", got=f"shape {states.shape}")
-    largest: FloatArray = np.abs(np.diff(states, axis=0)).max(axis=0)
-    return largest

@@ -27,6 +27,9 @@ from muybridge.tracking.tracker import Estimate, Tracker, TrackerConfig
 FIT_SECONDS, FIT_FRAMES = 2.5, 12
 START_SECONDS, START_TRIES = 4.0, 9
 GOOD_START = 0.25  # two-sided silhouette cost at which no better first frame is looked for
+PERSON_ROWS = 230  # a person reduced to so many rows is tracked as well as at full size
+#: By filter, where fewer do: see docs/benchmarks.md, "The guided Gaussian-process filter".
+ROWS = {"agp-pf": 115}
 #: Only for looking ahead: no particles, the mode is enough.
 _LOOK = TrackerConfig("guided", replace(guided.WORKING, particles=3))
 
@@ -182,24 +185,21 @@ def _good(estimate: Estimate) -> bool:
 
 
 def reductions_of(job: Job, rig: Rig, body: Body) -> tuple[int, ...]:
-    """How much each camera's pictures are reduced: as the job says, or to `PERSON_ROWS` rows for the person."""
+    """How much each camera's pictures are reduced: as the job says, or to as many rows as its filter needs."""
     if job.likelihood.reduction is not None:
         return (job.likelihood.reduction,) * len(rig)
-    return reductions_for(rig, body)
+    return reductions_for(rig, body, ROWS.get(job.filter.name, PERSON_ROWS))
 
 
-def reductions_for(rig: Rig, body: Body) -> tuple[int, ...]:
-    """How much each camera's pictures are reduced so that the person has about `PERSON_ROWS` rows."""
+def reductions_for(rig: Rig, body: Body, wanted: int = PERSON_ROWS) -> tuple[int, ...]:
+    """How much each camera's pictures are reduced so that the person has about as many rows as are wanted."""
     focus = _focus(rig)
     out = []
     for camera in rig:
         distance = float(camera.world_to_camera(focus)[2]) if focus is not None else 0.0
         rows = camera.matrix[1, 1] * body.height / distance if distance > 0.3 else 0.5 * max(camera.size)
-        out.append(int(np.clip(round(rows / PERSON_ROWS), 1, 16)))
+        out.append(int(np.clip(round(rows / wanted), 1, 16)))
     return tuple(out)
-
-
-PERSON_ROWS = 230  # a person reduced to so many rows is tracked as well as at full size
 
 
 def _focus(rig: Rig) -> np.ndarray | None:

@@ -71,6 +71,11 @@ class TrackState:
     seen: int = 0
     reference: ColourReference | None = None
 
+    @property
+    def sought(self) -> bool:
+        """Where the person is, is not known: nobody was seen well in the last frame."""
+        return self.troubled > 0 or self.seen == 0
+
     def to_arrays(self) -> dict[str, np.ndarray]:
         """Named arrays, for a checkpoint."""
         arrays = {f"filter_{name}": np.asarray(value) for name, value in vars(self.filter).items()}
@@ -216,6 +221,8 @@ class Tracker:
         following, info = method.step(rng, state.filter, observation, self.dynamics, self.filter_config)
         if info.collapsed:
             return self._unseen(state, info)
+        if guess is not None and state.sought and not isinstance(following, guided.State):
+            following = replace(following, velocity=np.zeros_like(following.velocity))  # a jump tells no velocity
         costs = observation.costs(following.estimate)[0]
         doubted = self._doubted(state, costs[seeing], seeing)
         troubled = state.troubled + 1 if doubted else 0
@@ -241,13 +248,12 @@ class Tracker:
 
     def _guess(self, state: TrackState, observation: Observation) -> Guess | None:
         """What the filter may ask for; with the place from the masks where the person's is not known."""
-        troubled = state.troubled > 0 or state.seen == 0
         when = self.config.guess or ("always" if self.config.method == "agp-pf" else "troubled")
-        guess = self._made(observation) if troubled or when == "always" else None
+        guess = self._made(observation) if state.sought or when == "always" else None
         if guess is None:
             return None
         guess = turned_towards(guess, state.filter.estimate, self.model.body)
-        return placed(guess, observation, state.filter.estimate) if troubled else guess
+        return placed(guess, observation, state.filter.estimate) if state.sought else guess
 
     def _made(self, observation: Observation) -> Guess | None:
         """The guess that the evidence carries, else one made of its masks."""

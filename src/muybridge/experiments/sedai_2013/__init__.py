@@ -13,12 +13,12 @@
 from muybridge.experiments.experiment import Experiment
 from muybridge.experiments.sedai_2013.conditions import prepare, scale_of
 from muybridge.experiments.sedai_2013.guessing import ALPHA, GATES, MODES
-from muybridge.experiments.sedai_2013.tracking import ANGLES, CURVE, RECOVERY, TABLE4
+from muybridge.experiments.sedai_2013.tracking import ANGLES, CURVE, PRINTED, RECOVERY, TABLE4
 
 EXPERIMENT = Experiment(
     "sedai-2013",
     "Sedai et al. (2013), AGP-PF",
-    (TABLE4, GATES, ALPHA, MODES, CURVE, RECOVERY, ANGLES),
+    (TABLE4, PRINTED, GATES, ALPHA, MODES, CURVE, RECOVERY, ANGLES),
     scale=scale_of,
     prepare=prepare,
 )
