@@ -11,7 +11,7 @@ from muybridge.experiments.experiment import Case, Outcome, Part, Report, Scale
 from muybridge.experiments.summaries import coverage_table, difference_table, summary_table
 from muybridge.experiments.trial import Faults, Trial
 
-ROBUST_SEEDS = 5
+ROBUST_SEEDS = 3
 BASE = "own masks, right body"
 #: label -> faults, masks, body
 CONDITIONS: dict[str, tuple[Faults, str, str]] = {
