@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from matplotlib.artist import Artist
     from matplotlib.axes import Axes
 
+DASHED = (0, (3, 2))  # points drawn and left out
 PANELS = ("shoulder", "elbow", "hip", "knee")
 
 
@@ -36,7 +37,7 @@ def plot_joint_angles(
     deviations : (T, 8) float64, radians, optional
         Drawn as a band of plus and minus two of them.
     truth : ((U,) seconds, (U, 8) radians), optional
-        Drawn dashed.
+        Drawn dashed, in its side's colour.
 
     Returns
     -------
@@ -51,7 +52,8 @@ def plot_joint_angles(
         artists += plot_angle_pair(ax, times, angles[:, pair], spread, true_pair, theme=theme)
         title(ax, joint.capitalize(), "degrees, + forward", theme)
         if panel == 0:
-            ax.legend(loc="best", ncols=2, labelcolor=theme.muted)
+            above = {"loc": "lower right", "bbox_to_anchor": (1.0, 1.0), "frameon": False}
+            ax.legend(ncols=3, handlelength=1.4, columnspacing=1.0, fontsize=8, labelcolor=theme.muted, **above)
         if panel >= 2:
             ax.set_xlabel("time (s)")
     return artists
@@ -87,16 +89,9 @@ def plot_angle_pair(
             )
         artists += ax.plot(times, degrees, color=colour, label=side)
         if truth is not None:
-            label = "truth" if column else None
-            artists += ax.plot(
-                truth[0],
-                continuous_degrees(truth[1][:, column], degrees),
-                color=theme.truth,
-                linewidth=1.0,
-                linestyle=(0, (3, 2)),
-                alpha=0.85,
-                label=label,
-            )
+            true = continuous_degrees(truth[1][:, column], degrees)
+            once = "truth" if column else None
+            artists += ax.plot(truth[0], true, color=colour, linewidth=1.2, linestyle=DASHED, label=once)
     ax.margins(x=0.0)
     _fit_to_curves(ax)
     return artists
