@@ -67,7 +67,7 @@ def _partner_density(partner, y, x, densities, counts, totals, only, offsets, le
         return 1.0
     if single >= 0:
         i, j = _alone(single, densities.shape[2], across)
-        rare = np.float64(densities[qy, qx, j])
+        rare = float(densities[qy, qx, j])
         joint = rare * densities[y, x, i]
     else:
         joint, rare = _joint(counts, d, py, px, densities, y, x, qy, qx, across)
