@@ -117,7 +117,7 @@ def _fitted(field: NDArray, *given: NDArray) -> NDArray:
         kept = weights > 0
         slopes = terms[kept, None, :] * (mean[kept] / deviation[kept])[..., None]
         apart = ((divided - mean) / deviation)[kept]
-        weighted = slopes * weights[kept, None, None]
-        normal = np.einsum("pci,pcj->cij", weighted, slopes) + 1e-6 * np.eye(terms.shape[1])
-        field = field + np.linalg.solve(normal, np.einsum("pci,pc->ci", weighted, apart)[..., None])[..., 0].T
+        weighted = (slopes * weights[kept, None, None]).transpose(1, 2, 0)
+        normal = weighted @ slopes.transpose(1, 0, 2) + 1e-6 * np.eye(terms.shape[1])
+        field = field + np.linalg.solve(normal, weighted @ apart.T[..., None])[..., 0].T
     return field
