@@ -6,7 +6,15 @@ import numpy as np
 import pytest
 
 from muybridge._kernels.mixture import mixture_densities, mixture_scores, mixture_update
-from muybridge._kernels.pairs import NONE, SEVERAL, choose_partners, pair_scores, pair_update, pooled_scores, slot_deviations
+from muybridge._kernels.pairs import (
+    NONE,
+    SEVERAL,
+    choose_partners,
+    pair_scores,
+    pair_update,
+    pooled_scores,
+    slot_deviations,
+)
 from muybridge.segmentation.spatial import OFFSETS
 from reference import mixture as literal
 

@@ -96,6 +96,6 @@ def surprise(counts: np.ndarray, k: int, shown: int, limit: float) -> float:
 
 
 def light(field: np.ndarray, shape: tuple[int, int]) -> np.ndarray:
-    """(H, W, C): the gain of a field (6, C), a quadratic of the place, which goes from -1 to 1 over a picture (H, W)."""
+    """(H, W, C): the gain of a field (6, C), a quadratic of the place, which goes from -1 to 1 over the picture."""
     y, x = np.meshgrid(np.linspace(-1, 1, shape[0]), np.linspace(-1, 1, shape[1]), indexing="ij")
     return np.exp(np.stack([np.ones_like(x), x, y, x * x, x * y, y * y], axis=-1) @ field)

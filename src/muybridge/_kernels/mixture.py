@@ -1,9 +1,10 @@
 """A mixture of Gaussians at every pixel: densities, matching, and the update (Zhao 2009, 2.1 to 2.5).
 
 Covariances are diagonal. A slot whose weight is 0 is empty. `kept` has a bit for every component that counts as
-background. Pixels are independent of each other and rows are shared out over threads, so that threads change nothing. Functions of one
-pixel take whole arrays and its place: views would be counted at each pixel, and calls with whole arrays push tens of numbers, which costs more than what is
-done there; so the small ones are inlined.
+background. Pixels are independent of each other and rows are shared out over threads, so that threads change nothing.
+
+Functions of one pixel take whole arrays and its place, and the small ones are inlined: to make views, and to call with
+whole arrays, costs more than what is done there.
 """
 
 from __future__ import annotations

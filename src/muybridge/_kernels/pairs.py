@@ -2,10 +2,10 @@
 
 A pair (p, p + offset) is kept once, at p: counts (K, K) over combinations, and their sum, so that a weight of (3.2)
 is a count over the sum. A pixel's partners are numbered 2 d for the one at offset d and 2 d + 1 for the one at the
-negative offset, whose counts are read across; -1 is none. Most pairs have shown one combination alone, which `only`
-says, so that their counts need neither be read nor changed: all counts together fit no cache. A joint covariance has the blocks of the two pixels' own
-components, so a joint density is a product of two. Scores only read, and an update writes to its own pixel's pairs
-only: rows are shared out over threads, and threads change nothing.
+negative offset, whose counts are read across; -1 is none. Where a pair has shown one combination alone, `only` says
+which, and its counts need neither be read nor changed: all counts together fit no cache. A joint covariance has the
+blocks of the two pixels' own components, so a joint density is a product of two. Scores only read, and an update writes
+to its own pixel's pairs only: rows are shared out over threads, and threads change nothing.
 """
 
 from __future__ import annotations
@@ -67,7 +67,7 @@ def _partner_density(partner, y, x, densities, counts, totals, only, offsets, le
         return 1.0
     if single >= 0:
         i, j = _alone(single, densities.shape[2], across)
-        rare = np.float64(densities[qy, qx, j])
+        rare = float(densities[qy, qx, j])
         joint = rare * densities[y, x, i]
     else:
         joint, rare = _joint(counts, d, py, px, densities, y, x, qy, qx, across)
@@ -312,8 +312,8 @@ def pair_scores(weights, densities, counts, totals, only, offsets, partners, lim
 def slot_deviations(image, weights, means, variances, kept, floor, out):
     """Squared deviations from each background component, the largest over the channels; infinite for others.
 
-    A pixel's noise is about the same whatever it shows: no component is judged by more than the heaviest one's variance,
-    however wide it was made.
+    A pixel's noise is about the same whatever it shows: no component is judged by more than the heaviest one's
+    variance, however wide it was made.
 
     Parameters
     ----------

@@ -8,7 +8,7 @@ name           a pixel is foreground where                      choose it when
 `hue_key`      its hue is not the screen's                      the person stands before a blue or green screen
 `mixture`      it matches no mode that is seen often            the background has several states; people pass quickly
 `spatial`      its colour does not go with its partners'        it moves in blobs; people linger (Zhao 2009, ch. 3)
-`auto`         the one or the other of `gaussian`, `spatial`    nothing is known about the scene
+`auto`         no Gaussian its partners go with is near         nothing is known about the scene
 `kde`          none of its recent colours is near               leaves, water; little memory matters (Elgammal 2002)
 `mog2`, `knn`  OpenCV says so                                   speed is all, or to compare
 =============  ==============================================  =====================================================

@@ -1,8 +1,8 @@
 """Light that changes over the whole picture: estimated from the background, and taken out before pixels are judged.
 
 A lamp that goes off, a cloud, or the camera's exposure makes nearly all of the picture darker or brighter at once, and
-smoothly from place to place; nobody does. So the picture is taken for the background times exp(q), a quadratic q of
-the place for each channel, which iterated reweighted least squares finds from pixels on a lattice. People, and what
+smoothly from place to place; nobody does. So the picture is taken for the background times exp(q), with a quadratic q
+of the place for each channel, which iterated reweighted least squares finds from pixels on a lattice. People, and what
 else the background does not explain, are outliers. The field of the last picture, one gain for all pixels, and no
 change at all are tried; a field is believed only if with it the background explains at least half of the pixels, and
 `GAIN` of them more than with none. Otherwise nothing is changed, and the change is for the model to learn.
@@ -32,7 +32,7 @@ FURTHEST = 1.4
 
 
 class Light:
-    """The light of a stream of pictures, relative to that of the background.
+    """The light of a stream of pictures, relative to that of the background; `field` (6, C) is that of the last one.
 
     Parameters
     ----------
@@ -97,7 +97,8 @@ def _flat(seen: NDArray, mean: NDArray, deviation: NDArray, terms: NDArray) -> N
 def _divided(field: NDArray, seen: NDArray, mean: NDArray, deviation: NDArray, terms: NDArray) -> NDArray:
     """(P, C): the colours seen, in the background's light; a light too far from it leaves nothing to compare."""
     logarithm = terms @ field
-    return np.where(np.abs(logarithm) < FURTHEST, seen * np.exp(-logarithm), np.inf)
+    near = np.abs(logarithm) < FURTHEST
+    return np.where(near, seen * np.exp(-np.where(near, logarithm, 0.0)), np.inf)
 
 
 def _squared(divided: NDArray, seen: NDArray, mean: NDArray, deviation: NDArray, terms: NDArray) -> NDArray:
@@ -116,7 +117,7 @@ def _fitted(field: NDArray, *given: NDArray) -> NDArray:
         kept = weights > 0
         slopes = terms[kept, None, :] * (mean[kept] / deviation[kept])[..., None]
         apart = ((divided - mean) / deviation)[kept]
-        weighted = slopes * weights[kept, None, None]
-        normal = np.einsum("pci,pcj->cij", weighted, slopes) + 1e-6 * np.eye(terms.shape[1])
-        field = field + np.linalg.solve(normal, np.einsum("pci,pc->ci", weighted, apart)[..., None])[..., 0].T
+        weighted = (slopes * weights[kept, None, None]).transpose(1, 2, 0)
+        normal = weighted @ slopes.transpose(1, 0, 2) + 1e-6 * np.eye(terms.shape[1])
+        field = field + np.linalg.solve(normal, weighted @ apart.T[..., None])[..., 0].T
     return field

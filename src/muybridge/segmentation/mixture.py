@@ -132,7 +132,7 @@ class PixelMixtures:
         return self.heaviest((slice(None), slice(None)))[0]
 
     def heaviest(self, at: tuple[slice, slice]) -> tuple[NDArray, NDArray]:
-        """(R, Q, C) float32 each, grey values: mean and deviation of the heaviest components of some rows and columns."""
+        """Mean and deviation of the heaviest component at some rows and columns, (R, Q, C) float32 grey values."""
         heaviest = self.weights[at].argmax(axis=2)[..., None, None]
         mean, variance = (np.take_along_axis(of[at], heaviest, axis=2)[:, :, 0] for of in (self.means, self.variances))
         return mean, np.sqrt(variance)

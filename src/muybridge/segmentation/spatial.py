@@ -25,6 +25,8 @@ Differences from the paper:
   that all weights grow to 1. Here the matched one gains `pair_rate`, 1 / n at first, and all others lose as much (2.5).
 - What is foreground is not learnt until it has been foreground for `patience` pictures; with `patience=0` everything is
   learnt, as in the thesis, and who stands still is background soon.
+- Light that changes over the whole picture is taken out first (`muybridge.segmentation.light`), unless `light=False`.
+- What is beside foreground is not learnt either (`FRINGE`).
 - A component counts as background if it is among those that hold `portion` of the weight; `portion=1` takes all.
 - P(c0, ci) = P(c0 | ci) P(ci) blames a pixel for a partner in front of which somebody stands, which widens people by
   the distance of the partners. -log P(ci) counts up to `partner_limit`; infinity is (3.1) as printed.
@@ -131,15 +133,16 @@ class SpatialBackground:
 
     def learn(self, image: NDArray) -> None:
         """Learn all of a picture."""
-        self._learn(self._relit(self._checked(image)), self._everything)
+        self._learn(self._followed(self._checked(image)), self._everything)
 
     def score(self, image: NDArray) -> NDArray:
         """(H, W) float32, nats: -log of (3.1) over evenly spread colours; learns nothing."""
-        return self._score(self._relit(self._checked(image)))
+        picture = self._checked(image)
+        return self._score(self._light.taken_out(picture, self._field(picture)))
 
     def apply(self, image: NDArray) -> NDArray:
         """Foreground (H, W) bool; learns the background of the picture."""
-        picture = self._relit(self._checked(image))
+        picture = self._followed(self._checked(image))
         mask = close_open(self._score(picture) > self.config.threshold, self.config.closing, self.config.opening)
         self._learn(picture, self._gate.learnt(mask, picture) & ~beside(mask, FRINGE))
         return mask
@@ -161,13 +164,16 @@ class SpatialBackground:
         first = mixtures.seen % RESELECT
         choose_partners(self.counts, self.only, OFFSETS, first, RESELECT, self._information, self.partners)
 
-    def _relit(self, picture: NDArray) -> NDArray:
-        """The picture as it would look in the light of the background."""
-        if not self.config.light or not self.mixtures.seen:
-            return picture
-        mean, deviation = self.mixtures.heaviest(self._light.lattice)
-        self._light.field = self._light.measure(picture, mean, deviation)
+    def _followed(self, picture: NDArray) -> NDArray:
+        """The picture as it would look in the light of the background; the next one's is looked for from there."""
+        self._light.field = self._field(picture)
         return self._light.taken_out(picture, self._light.field)
+
+    def _field(self, picture: NDArray) -> NDArray:
+        """(6, C): the light of a picture over that of the background."""
+        if not self.config.light or not self.mixtures.seen:
+            return np.zeros_like(self._light.field)
+        return self._light.measure(picture, *self.mixtures.heaviest(self._light.lattice))
 
     def _checked(self, image: NDArray) -> NDArray:
         shape = (*self.mixtures.kept.shape, self.mixtures.means.shape[3])
