@@ -13,6 +13,7 @@
 | `identity` | who is who after people met | ours |
 | `filtered`, `person`, `tracker` | one box, one person, all of them | ch. 4, 5 |
 | `tracks`, `run` | what comes out; a video from end to end | |
+| `on_ground` | where people stand on the floor, of a calibrated camera | |
 
 The particle filter is `filters.condensation`, as for everything else.
 """

@@ -37,4 +37,4 @@ def lasting_picture(pictures: Sequence[NDArray[np.uint8]]) -> NDArray[np.uint8]:
     pixels = np.stack(pictures, axis=2)
     shown = np.zeros(pixels.shape[:3], np.bool_)
     over_rows_lasting(pixels, -(-len(pictures) // TRIED), TOLERANCE, FEWEST, OFTEN, shown)
-    return median_picture(pictures, np.moveaxis(shown, 2, 0))
+    return median_picture(pictures, list(np.moveaxis(shown, 2, 0)))
