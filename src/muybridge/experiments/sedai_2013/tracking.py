@@ -106,7 +106,7 @@ def error_table(name: str, title: str, groups: Mapping[str, Sequence[Row]]) -> T
 
 
 def cases_of_curve(scale: Scale) -> Iterator[Case]:
-    """Walks, three cameras: GP-PF and PF get as many evaluations as the annealed ones, in one layer."""
+    """Walks, three cameras; with one layer GP-PF and PF take a fifth of the evaluations for as many particles."""
     clips = scale.walks(seeds=CURVE_SEEDS)
     counts = PARTICLES[::2] if scale.quick else PARTICLES
     for name in ("AGP-PF", "APF", "GP-PF", "PF"):
