@@ -36,9 +36,19 @@ def values(rows: Sequence[Row], value: Value) -> dict[tuple[int, str], float]:
     return {row.key: value(row) for row in rows}
 
 
+def free_error(row: Row) -> float:
+    """Mean joint error, mm, alignment none, a frame counting at most LOST_MM."""
+    return row.error_mm
+
+
+def root_aligned(row: Row) -> float:
+    """Mean joint error, mm, alignment root, at most LOST_MM."""
+    return float(min(row.result.root_mm, LOST_MM))
+
+
 def error(rows: Sequence[Row]) -> Interval:
     """Mean joint error with its interval."""
-    return over_seeds(values(rows, lambda row: row.error_mm))
+    return over_seeds(values(rows, free_error))
 
 
 def summary_table(name: str, title: str, groups: Mapping[str, Sequence[Row]]) -> Table:
@@ -54,7 +64,7 @@ def _summary(label: str, rows: Sequence[Row]) -> tuple[Cell, ...]:
         label,
         error(rows),
         float(np.median([row.error_mm for row in rows])),
-        of(lambda row: min(row.result.root_mm, LOST_MM)),
+        of(root_aligned),
         of(lambda row: row.result.angle_deg),
         float(np.mean([row.result.lost_share for row in rows])),
         float(np.mean([row.result.evaluations for row in rows])),
@@ -90,13 +100,15 @@ def parts_table(name: str, title: str, groups: Mapping[str, Sequence[Row]]) -> T
     return Table(name, title, columns, tuple(rows), (note,))
 
 
-def difference_table(name: str, title: str, groups: Mapping[str, Sequence[Row]], reference: str) -> Table:
+def difference_table(
+    name: str, title: str, groups: Mapping[str, Sequence[Row]], reference: str, value: Value = free_error
+) -> Table:
     """Each group minus the reference on the same scene and seed, mm: negative is better than the reference."""
-    against = values(groups[reference], lambda row: row.error_mm)
+    against = values(groups[reference], value)
     rows: list[tuple[Cell, ...]] = []
     for label, group in groups.items():
         if label != reference:
-            gap = paired(values(group, lambda row: row.error_mm), against)
+            gap = paired(values(group, value), against)
             rows.append((label, gap, verdict(gap)))
     columns = (Column("condition"), Column(f"minus {reference}, mm"), Column("reading"))
     return Table(name, title, columns, tuple(rows), ("Paired by scene and seed; 95 % interval over seeds.",))
