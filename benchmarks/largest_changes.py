@@ -3,7 +3,7 @@
     python benchmarks/largest_changes.py [FIGURE [SEED]]
 
 Sedai et al. (2013) take it for the standard deviation of the motion model. `tracking.motion.GUESSING_PRINTED` has the
-place's, the heading's and the turns' of what this prints for a jog.
+place's, the heading's and the knees' of what this prints for a jog: 2.2 m, 2.7 rad and 12 rad a second.
 """
 
 from __future__ import annotations

@@ -96,8 +96,8 @@ SEARCHING_ONE_CAMERA = replace(SEARCHING, usual_weight=10.0)
 #: Whoever is lost is brought back by a guess. See docs/benchmarks.md, "The guided Gaussian-process filter".
 GUESSING = ProportionalMotion(0.5, 1.3, 1.1, 0.5, 1.0, 0.0, 0.0, 0.0, usual_weight=3.0)
 #: Of it, as Sedai et al. (2013) have it: no velocity, nothing usual, and deviations of the largest change between two
-#: frames, which a rendered man's jog has: 2.2 metres, 2.7 radians of the heading and 12 of a knee, a second, see
-#: `benchmarks/largest_changes.py`.
+#: frames. The place's, the heading's and the knees' are those of a rendered man's jog (2.2 m, 2.7 and 12 rad a second,
+#: see `benchmarks/largest_changes.py`); other turns follow in proportion, which is wider than that for the arms.
 GUESSING_PRINTED = ProportionalMotion(2.2, 2.7, 5.5, 0.0, 1.0, 0.0, 0.0, 0.0, usual_weight=0.0)
 
 
