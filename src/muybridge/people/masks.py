@@ -19,9 +19,9 @@ from muybridge.errors import InputError
 from muybridge.people.blobs import Mask
 from muybridge.segmentation import BACKGROUND_MODELS, BackgroundModel, build_background, median_picture
 from muybridge.segmentation.lasting import lasting_picture
+from muybridge.segmentation.light import relit
 from muybridge.segmentation.plate import PlateBackground
 from muybridge.segmentation.plate_making import keep_touching
-from muybridge.segmentation.relight import relit
 from muybridge.segmentation.shadows import remove_shadows
 
 

@@ -31,6 +31,17 @@ FURTHEST = 1.4
 """Logarithm of a gain: a factor of four is no longer a light under which colours can be compared."""
 
 
+NOISE, MATCH = 5.0, 2.5
+"""Of a single picture of the background: grey values, one standard deviation; and `Light`'s match for it."""
+
+
+def relit(picture: NDArray, plate: NDArray) -> NDArray:
+    """The picture (H, W, C) uint8 in the light of a plate (H, W, C) of the same scene; itself where it has that."""
+    light = Light(picture.shape, MATCH)
+    mean = plate[light.lattice]
+    return light.taken_out(picture, light.measure(picture, mean, np.full(mean.shape, NOISE)))
+
+
 class Light:
     """The light of a stream of pictures, relative to that of the background; `field` (6, C) is that of the last one.
 

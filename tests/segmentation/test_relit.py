@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from made_people import HEIGHT, WIDTH, empty_scene
-from muybridge.segmentation.relight import relit
+from muybridge.segmentation.light import relit
 
 EMPTY = empty_scene()
 COLUMNS = np.linspace(0, 1, WIDTH)[None, :, None]
