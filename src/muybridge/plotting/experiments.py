@@ -74,7 +74,7 @@ def plot_budgets(
 
     Parameters
     ----------
-    curves : filter -> (evaluations, mean, low, high), each (n,) float64
+    curves : filter -> (evaluations, mean, low, high), each (n,) float64; NaN for a bound is no band there
     """
     artists: list[Artist] = []
     for (label, (evaluations, mean, low, high)), colour, marker in zip(curves.items(), COLOURS, MARKERS, strict=False):
@@ -83,12 +83,13 @@ def plot_budgets(
     means = np.concatenate([mean for _, mean, _, _ in curves.values()])
     ax.set_xscale("log")
     ax.set_yscale("log")
-    ax.set_ylim(0.6 * means.min(), 1.8 * means.max())  # a band of two seeds must not flatten the curves
+    ax.set_ylim(0.6 * means.min(), 1.8 * means.max())  # a band of few seeds must not flatten the curves
     _plain_ticks(ax, "x", (250, 500, 1000, 2000, 5000, 10000, 20000))
     _plain_ticks(ax, "y", (5, 10, 20, 50, 100, 200, 500, 1000))
     ax.set_xlabel("likelihood evaluations a frame")
-    ax.legend(loc="best", labelcolor=theme.muted)
-    title(ax, heading, "mm, mean and 95 % interval over seeds", theme)
+    ax.legend(loc="upper center", bbox_to_anchor=(0.5, -0.18), ncols=5, frameon=False, fontsize=8, columnspacing=1.0,
+              handlelength=1.4, labelcolor=theme.muted)  # fmt: skip
+    title(ax, heading, "mm, mean; bands: 95 % interval over seeds, where there are three or more", theme)
     return artists
 
 
