@@ -80,7 +80,7 @@ def scale_of(quick: bool, seeds: int | None = None) -> Scale:
     if seeds is not None and seeds < 1:
         raise InputError("seeds", expected="at least 1", got=str(seeds))
     if quick:
-        return Scale(True, seeds or QUICK_SEEDS, known_figures()[:1], known_motions()[:1], 20)
+        return Scale(True, seeds or QUICK_SEEDS, known_figures()[:1], known_motions()[:1], 12)
     return Scale(False, seeds or DEFAULT_SEEDS, known_figures()[:3], known_motions()[:3], 45)
 
 
