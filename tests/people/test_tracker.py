@@ -126,7 +126,8 @@ def test_a_child_has_a_box_of_its_own_height() -> None:
     boxes = tracked([child], 50).tracks().boxes
     heights = boxes.boxes[(boxes.frames >= 30) & (boxes.frames < 48), 3]
     assert abs(heights.mean() - 45) < 3
-    assert abs(known().ground.height(160.0) - 60) < 2  # type: ignore[union-attr]
+    ground = known().ground
+    assert ground is not None and abs(ground.height(160.0) - 60) < 2
 
 
 def test_the_seed_decides_and_nothing_else() -> None:

@@ -26,18 +26,18 @@ def with_people(picture: np.ndarray) -> np.ndarray:
 
 
 def test_the_old_light() -> None:
-    """Rounding down to whole values by a gain of 0.45 costs a grey value, which is 2 of the brighter picture; steps of
-    1/64 of an octave 0.5 %, and the slope of the light within a cell 0.4 %, of 150: one more. Together 3."""
+    """Grey values, means: cut down to whole ones under a gain of at least 0.45, 0.5 / 0.45 = 1.1; rounded again, 0.25;
+    a quadratic for log(0.75 - 0.3 x) is 0.07 % off, of 140 0.1. Together 1.5."""
     found = relit(dimmed(EMPTY), EMPTY).astype(float)
-    inner = np.s_[:, 20:-20]  # at the sides windows and means are one-sided
-    assert np.abs(found - EMPTY)[inner].mean() < 3
+    assert np.abs(found - EMPTY).mean() < 1.5
     assert np.abs(dimmed(EMPTY).astype(float) - EMPTY).mean() > 50  # negative control
 
 
 def test_people_stay_as_dark_before_the_floor() -> None:
+    """Cut down from 42 under a gain of 0.6: half a grey value of it, 1.2 %; the field's own misfit and bias, 0.8 %."""
     before, after = with_people(EMPTY), relit(dimmed(with_people(EMPTY)), EMPTY)
     person = np.s_[70:170, 65:95]
-    assert abs(float(after[person].mean()) / float(before[person].mean()) - 1) < 0.06
+    assert abs(float(after[person].mean()) / float(before[person].mean()) - 1) < 0.02
 
 
 def test_a_picture_in_the_same_light_is_itself() -> None:
