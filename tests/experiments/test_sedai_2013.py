@@ -11,9 +11,11 @@ from experiments.made_results import result
 from muybridge.experiments.experiment import Case, Row
 from muybridge.experiments.harness import experiment
 from muybridge.experiments.sedai_2013 import conditions
+from muybridge.experiments.sedai_2013.facing import turned_frames
 from muybridge.experiments.sedai_2013.tracking import frames_to_recover, usual_error
 from muybridge.experiments.trial import Clip, Trial
 from muybridge.filters import agp_pf
+from muybridge.io.run_folder import JointSeries
 
 SCALE = conditions.scale_of(False, 2)
 
@@ -63,3 +65,15 @@ def test_frames_to_recover() -> None:
     assert frames_to_recover(row, 20.0) == 2
     assert frames_to_recover(replace(row, case=Case("x", Trial(Clip()))), 20.0) == 0
     assert np.isinf(frames_to_recover(row, 10.0))
+
+
+@pytest.mark.parametrize(("degrees", "turned"), [(0, False), (80, False), (-80, False), (100, True), (180, True)])
+def test_turned_is_more_than_a_right_angle_seen_from_above(degrees: float, turned: bool) -> None:
+    """Hips 0.3 m apart, one of them 0.1 m higher: height says nothing about where somebody faces."""
+
+    def hips(angle: float) -> JointSeries:
+        across = 0.15 * np.array([np.cos(np.radians(angle)), np.sin(np.radians(angle)), 1 / 3])
+        positions = np.stack([across, -across])[None] + np.array([1.0, 2.0, 0.9])
+        return JointSeries(("left_hip", "right_hip"), np.array([0]), np.array([0.0]), positions, np.full((1, 2), 0.01))
+
+    assert turned_frames(hips(20.0 + degrees), hips(20.0)).tolist() == [turned]

@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 
@@ -90,3 +91,11 @@ def test_bad_input_is_one_line(make, words: str) -> None:
 def test_what_cannot_be_tried(changed: dict, words: str) -> None:
     with pytest.raises(InputError, match=words):
         replace(BASE, **changed)
+
+
+def test_a_rehearsal_needs_no_guess_of_silhouettes_that_it_made_small(monkeypatch: pytest.MonkeyPatch) -> None:
+    ran: list[Trial] = []
+    monkeypatch.setattr(Trial, "run", lambda trial, folder: ran.append(trial))
+    Trial(Clip(), "agp-pf", begin="guess", guesser="some").rehearse(Path("nowhere"))
+    (trial,) = ran
+    assert trial.begin == "truth" and trial.guesser == "some" and trial.clip.frames == 2

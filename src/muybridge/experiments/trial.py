@@ -179,9 +179,9 @@ class Trial:
         return None if self.masks == "job" else (self.method, self.cues, self.body)
 
     def rehearse(self, folder: Path) -> None:
-        """Two small frames."""
+        """Two small frames, from the truth: silhouettes may be too small for a guess of the first pose."""
         short = replace(self.clip, frames=2, reduction=8)
-        replace(self, clip=short, keep_track=False, gap=()).run(folder)
+        replace(self, clip=short, begin="truth", keep_track=False, gap=()).run(folder)
 
     def run(self, folder: Path) -> Result:
         """Track the clip."""

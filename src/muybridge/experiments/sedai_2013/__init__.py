@@ -8,17 +8,19 @@
 | `conditions` | who is learnt from and who is tracked; the filters, printed and working |
 | `guessing` | the regressor by itself: Table III, Figs. 8, 9, 13 |
 | `tracking` | Table IV, Figs. 10 and 14, recovery |
+| `facing` | which way a person before one camera is thought to face |
 """
 
 from muybridge.experiments.experiment import Experiment
 from muybridge.experiments.sedai_2013.conditions import prepare, scale_of
+from muybridge.experiments.sedai_2013.facing import FACING
 from muybridge.experiments.sedai_2013.guessing import ALPHA, GATES, MODES
 from muybridge.experiments.sedai_2013.tracking import ANGLES, CURVE, PRINTED, RECOVERY, TABLE4
 
 EXPERIMENT = Experiment(
     "sedai-2013",
     "Sedai et al. (2013), AGP-PF",
-    (TABLE4, PRINTED, GATES, ALPHA, MODES, CURVE, RECOVERY, ANGLES),
+    (TABLE4, PRINTED, GATES, ALPHA, MODES, CURVE, RECOVERY, ANGLES, FACING),
     scale=scale_of,
     prepare=prepare,
 )
