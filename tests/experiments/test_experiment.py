@@ -1,14 +1,15 @@
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 from experiments.made_results import SMALL, result, row
 from muybridge.errors import InputError
-from muybridge.experiments.experiment import LOST_MM, Case, Outcome, Row, scale_of
-from muybridge.experiments.harness import EXPERIMENTS, experiment
-from muybridge.experiments.trial import Trial
+from muybridge.experiments.experiment import LOST_MM, Case, Experiment, Outcome, Part, Report, Row, scale_of
+from muybridge.experiments.harness import EXPERIMENTS, experiment, run_experiment
+from muybridge.experiments.trial import Clip, Trial
 
 DU = experiment("du-2005")
 
@@ -54,3 +55,17 @@ def test_groups_keep_the_order_of_the_cases() -> None:
     rows = (row("b", 0, 1), row("a", 0, 2), row("b", 1, 3))
     found = Outcome(rows, SMALL, Path()).groups()
     assert list(found) == ["b", "a"] and len(found["b"]) == 2
+
+
+def test_what_left_a_file_that_is_gone_is_run_again(tmp_path: Path) -> None:
+    """Results are carried to other places without the tracks that plots are drawn from."""
+    trial = replace(Trial(Clip(frames=2, reduction=8), "condensation").with_settings(particles=20), keep_track=True)
+    part = Part("one", "One", lambda outcome: Report(), lambda scale: iter([Case("one", trial)]))
+    asked = Experiment("made", "Made", (part,), scale=scale_of)
+    ran = [run_experiment(asked, SMALL, tmp_path).run]
+    (track,) = trial.leaves(tmp_path)
+    assert track.is_file()
+    ran.append(run_experiment(asked, SMALL, tmp_path, resume=True).run)
+    track.unlink()
+    ran.append(run_experiment(asked, SMALL, tmp_path, resume=True).run)
+    assert ran == [1, 0, 1] and track.is_file()

@@ -72,7 +72,7 @@ def run_experiment(
     trials = list(dict.fromkeys(case.trial for found in cases.values() for case in found))
     asked.prepare(scale, out, workers)
     with Store(out) as store:
-        missing = [trial for trial in trials if trial not in store]
+        missing = [trial for trial in trials if trial not in store or not _all_there(trial, out)]
         if missing and workers > 1:
             warm_up(missing, out)
         run_trials(missing, out, store.append, workers=workers, progress=progress)
@@ -90,6 +90,11 @@ def warm_up(trials: Sequence[RunnableTrial], folder: Path) -> None:
         if trial.kernels not in seen:
             seen.add(trial.kernels)
             trial.rehearse(folder)
+
+
+def _all_there(trial: RunnableTrial, folder: Path) -> bool:
+    """Whether what it left is still there: results may have been carried here without it."""
+    return all(path.is_file() for path in trial.leaves(folder))
 
 
 def _outcome(cases: Sequence[Case], store: Store, scale: Amount, out: Path) -> Outcome:

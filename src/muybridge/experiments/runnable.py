@@ -56,6 +56,10 @@ class RunnableTrial(Protocol):
         """Trials that agree in it run the same compiled code; None: nothing is compiled."""
         ...
 
+    def leaves(self, folder: Path) -> tuple[Path, ...]:
+        """Files that reports read beside the result: without them the trial has to be run again."""
+        ...
+
     def rehearse(self, folder: Path) -> None:
         """Run something short, so that what is compiled lies in the cache."""
         ...

@@ -26,7 +26,7 @@ from muybridge.tracking.silhouette_guesser import SilhouetteGuesser
 from muybridge.tracking.spread import MEASURED, SpreadConfig
 from muybridge.tracking.tracker import Tracker, TrackerConfig
 
-TRACKS, SCENES, MODELS = "tracks", "scenes", "models"  # folders of an experiment
+SCENES, MODELS = "scenes", "models"  # folders of an experiment
 PLACE = ("pelvis",)
 LEGS = ("left_knee", "right_knee", "left_ankle", "right_ankle")
 ARMS = ("left_elbow", "right_elbow", "left_wrist", "right_wrist")
@@ -126,7 +126,9 @@ def run_trial(trial: Trial, folder: Path) -> Result:
     else:
         tracked = tracked_in_process(trial, evidence, guesser_of(trial, folder))
     if trial.keep_track:
-        write_joints(make_folder(folder / TRACKS) / f"{trial.digest}.csv", tracked.series)
+        path = trial.track_file(folder)
+        make_folder(path.parent)
+        write_joints(path, tracked.series)
     return judged(tracked, evidence)
 
 

@@ -21,7 +21,7 @@ from muybridge.tracking.motion import GUESSING_PRINTED, SEARCHING, Motion, motio
 if TYPE_CHECKING:
     from muybridge.experiments.running import Result
 
-EVIDENCE = "evidence"  # folder of an experiment
+EVIDENCE, TRACKS = "evidence", "tracks"  # folders of an experiment
 VERSION = 4  # raise it when a trial of the same description gives another result
 MASKS, MASK_FAULTS = ("own", "true", "job"), ("", "eroded", "dilated", "holes")
 BODIES, TORSOS = ("right", "height"), ("elliptical", "round")
@@ -177,6 +177,14 @@ class Trial:
     def kernels(self) -> Hashable:
         """The filter, its cues and the body; nothing is rehearsed for a job, which is another process's."""
         return None if self.masks == "job" else (self.method, self.cues, self.body)
+
+    def track_file(self, folder: Path) -> Path:
+        """Where the estimated joints are left, if they are."""
+        return folder / TRACKS / f"{self.digest}.csv"
+
+    def leaves(self, folder: Path) -> tuple[Path, ...]:
+        """See `RunnableTrial`."""
+        return (self.track_file(folder),) if self.keep_track else ()
 
     def rehearse(self, folder: Path) -> None:
         """Two small frames, from the truth: silhouettes may be too small for a guess of the first pose."""

@@ -14,7 +14,6 @@ from muybridge.experiments.bodies import start_pose
 from muybridge.experiments.clips import Evidence, evidence_of
 from muybridge.experiments.du_2005.conditions import THREE_CUES, at_shape, working
 from muybridge.experiments.experiment import Case, Outcome, Part, Report, Scale
-from muybridge.experiments.running import TRACKS
 from muybridge.experiments.scenes import right_body
 from muybridge.experiments.tables import Cell, Column, Table
 from muybridge.experiments.trial import EVIDENCE, Clip
@@ -151,7 +150,7 @@ def angle_report(outcome: Outcome) -> Report:
     figures, rows = {}, []
     for row in outcome.rows:
         trial = row.case.trial
-        series = read_joints(outcome.folder / TRACKS / f"{trial.digest}.csv")
+        series = read_joints(trial.track_file(outcome.folder))
         truth = evidence_of(trial.clip, outcome.folder / EVIDENCE).truth
         found = joint_angles(series.positions, series.names)
         spread = angle_deviations(series.positions, series.sd, series.names)

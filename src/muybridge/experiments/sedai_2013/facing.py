@@ -14,7 +14,6 @@ import numpy as np
 from muybridge.evaluation.joints import joint_errors
 from muybridge.experiments.clips import evidence_of
 from muybridge.experiments.experiment import Case, Outcome, Part, Report, Row, Scale
-from muybridge.experiments.running import TRACKS
 from muybridge.experiments.sedai_2013.conditions import one_camera, over, working
 from muybridge.experiments.tables import Cell, Column, Table
 from muybridge.experiments.trial import EVIDENCE
@@ -55,7 +54,7 @@ def _summary(outcome: Outcome, rows: Sequence[Row]) -> tuple[Cell, ...]:
 
 def _judged(outcome: Outcome, row: Row) -> tuple[np.ndarray, np.ndarray]:
     """Of each frame (T,): whether the estimate is turned, and its root-aligned error in mm."""
-    series = read_joints(outcome.folder / TRACKS / f"{row.case.trial.digest}.csv")
+    series = read_joints(row.case.trial.track_file(outcome.folder))
     truth = evidence_of(row.case.trial.clip, outcome.folder / EVIDENCE).truth
     return turned_frames(series, truth), joint_errors(series, truth, "root").frame_means_mm
 

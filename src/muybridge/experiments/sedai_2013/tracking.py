@@ -10,7 +10,6 @@ import numpy as np
 from muybridge.evaluation.angles import angle_deviations, joint_angles
 from muybridge.experiments.clips import evidence_of
 from muybridge.experiments.experiment import LOST_MM, Case, Outcome, Part, Report, Row, Scale
-from muybridge.experiments.running import TRACKS
 from muybridge.experiments.sedai_2013.conditions import NAMES, guided, one_camera, over, printed, working
 from muybridge.experiments.statistics import over_seeds
 from muybridge.experiments.summaries import (
@@ -197,7 +196,7 @@ def report_of_angles(outcome: Outcome) -> Report:
     figures, rows = {}, []
     for row in outcome.rows:
         trial = row.case.trial
-        series = read_joints(outcome.folder / TRACKS / f"{trial.digest}.csv")
+        series = read_joints(trial.track_file(outcome.folder))
         truth = evidence_of(trial.clip, outcome.folder / EVIDENCE).truth
         found, true = (joint_angles(s.positions, s.names) for s in (series, truth))
         figure, axes = new_figure(2, 2, width=9.0, height=5.6)

@@ -106,6 +106,10 @@ class PeopleTrial(ABC):
         """One kind of trial runs one set of kernels."""
         return type(self).__name__
 
+    def leaves(self, folder: Path) -> tuple[Path, ...]:
+        """See `RunnableTrial`; nothing."""
+        return ()
+
     def rehearse(self, folder: Path) -> None:
         """Half a second of a small hall."""
         from dataclasses import replace

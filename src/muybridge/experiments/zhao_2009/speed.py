@@ -47,6 +47,10 @@ class SpeedTrial:
         """The first round compiles."""
         return None
 
+    def leaves(self, folder: Path) -> tuple[Path, ...]:
+        """See `RunnableTrial`; nothing."""
+        return ()
+
     def rehearse(self, folder: Path) -> None:
         """Not asked for."""
 

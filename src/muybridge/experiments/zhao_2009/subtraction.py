@@ -92,6 +92,10 @@ class BackgroundTrial:
     def kernels(self) -> str:
         return self.model
 
+    def leaves(self, folder: Path) -> tuple[Path, ...]:
+        """See `RunnableTrial`; nothing."""
+        return ()
+
     def rehearse(self, folder: Path) -> None:
         """Two small pictures of noise."""
         rng = np.random.default_rng(0)
