@@ -6,8 +6,8 @@ of |x - b|, how far the target itself is from the background at that place, and 
 
     log p = sum over bands of v (min(|z - b|, |x - b|)^2 - |z - x|^2) / (2 B sigma^2 |x - b|^2)
 
-It is 1 / (2 sigma^2) for the target, minus as much for background, at most 0 for somebody of other colours who is as far
-from the target as the background is, and 0 where nothing is seen: behind somebody nearer, whose pixels are not counted.
+It is 1 / (2 sigma^2) for the target, minus as much for background, at most 0 for somebody of other colours who is as
+far from the target as the background is, and 0 where nothing is seen: behind somebody nearer, whose pixels are not counted.
 
 ==========  ================================================
 symbol      name
@@ -108,6 +108,10 @@ class ContrastLikelihood:
         roots = np.sqrt(self.target.histograms)
         contrast_scores(now.table, empty.table, now.left, now.top, boxes, roots, np.float32(config.floor), out)
         return 0.5 * out / config.spread**2
+
+    def likeness(self, state: FloatArray) -> float:
+        """0 to 1, of one box (>= 4,): 1 for what looks as the target did."""
+        return float(np.exp(self.log_prob(state[None])[0] - 0.5 / self.target.config.spread**2))
 
     def histogram(self, state: FloatArray) -> NDArray[np.float32]:
         """(B, 24) of one box (>= 4,): shares of all pixels of each band; what is not seen is missing from the sums."""

@@ -29,8 +29,8 @@ from muybridge.people.scene import describe
 from muybridge.people.tracker import PeopleTracker
 
 CONDITIONS = ("one box", "no repair", "repair", "ours", "ours, repair")
-"""A single box a person, which is what the whole body is compared with in Fig. 6.15 (d); the thesis' three parts without
-and with repair; `muybridge people`, which follows bodies too, without and with it."""
+"""A single box a person, which is what the whole body is compared with in Fig. 6.15 (d); the thesis' three parts
+without and with repair; `muybridge people`, which follows bodies too, without and with it."""
 FRAME, NEAR = 105, 5
 """The thesis' frame, and how many frames to either side are averaged."""
 TARGETS = (*PARTS, "whole")

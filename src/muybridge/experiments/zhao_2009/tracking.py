@@ -20,8 +20,8 @@ from muybridge.experiments.statistics import over_seeds
 from muybridge.experiments.tables import Cell, Column, Table
 from muybridge.experiments.zhao_2009.people_clips import ClipPictures, PeopleTrial, people_clips
 from muybridge.filters import condensation
-from muybridge.people.box import HEIGHT, PRINTED_VARIANCES, SPEED_Y, BoxMotion, Y, states_from_boxes
 from muybridge.people.blobs import Mask
+from muybridge.people.box import HEIGHT, PRINTED_VARIANCES, SPEED_Y, BoxMotion, Y, states_from_boxes
 from muybridge.people.colour_likelihood import ColourTarget, Picture
 from muybridge.people.contrast_likelihood import ContrastTarget
 from muybridge.people.evidence import middle
