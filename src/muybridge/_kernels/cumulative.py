@@ -130,7 +130,7 @@ def contrast_scores(now, empty, left, top, bands, roots, floor, out):
     """Fill out (N,) float64 with the mean over bands of v (min(|z - b|^2, c^2) - |z - x|^2) / c^2.
 
     Here z, b and x are square roots of shares, c is the larger of |x - b| and the floor, and v is the share of the
-    band's pixels that was counted: those that are in the picture and shown. A band of which nothing was counted says nothing.
+    band's pixels that was counted: those that are in the picture and shown. A band without them says nothing.
 
     now, empty : (H + 1, W + 1, WORDS) uint64, tables of the picture and of the background, see `box_histograms`;
     bands : (N, B, 4) int64, see `cut`; roots : (B, LANES) float32, x of each band.

@@ -7,7 +7,8 @@ of |x - b|, how far the target itself is from the background at that place, and 
     log p = sum over bands of v (min(|z - b|, |x - b|)^2 - |z - x|^2) / (2 B sigma^2 |x - b|^2)
 
 It is 1 / (2 sigma^2) for the target, minus as much for background, at most 0 for somebody of other colours who is as
-far from the target as the background is, and 0 where nothing is seen: behind somebody nearer, whose pixels are not counted.
+far from the target as the background is, and 0 where nothing is seen: behind somebody nearer, whose pixels are not
+counted.
 
 ==========  ================================================
 symbol      name

@@ -86,7 +86,8 @@ def _text(flags: np.ndarray) -> str:
 
 
 Followed = tuple[np.ndarray, np.ndarray, np.ndarray]
-"""Of one person: boxes (T, 3, 4) of the parts, or (T, 1, 4); the true parts, and the true body's (T, 4); left, top, width, height."""
+"""Of one person, left, top, width, height: boxes (T, 3, 4) of the parts, or (T, 1, 4) of the one box; the true parts'
+(T, 3, 4), and the true body's (T, 4)."""
 
 
 def _by_parts_alone(clip: PeopleClip, pictures: ClipPictures, detector: FailureDetector | None) -> Iterator[Followed]:
