@@ -37,7 +37,7 @@ def test_pixel_by_pixel(scene: tuple[np.ndarray, np.ndarray]) -> None:
     for left, top in corners:
         bands = np.array([[left, top + 10 * k, left + 12, top + 10 * (k + 1)] for k in range(3)])
         expected.append(
-            contrast_score(picture, background, shown, target.bins.lanes, bands, target.histograms, CONFIG.floor)
+            contrast_score(picture, background, shown, target.bins.lanes, bands, target.histogram, CONFIG.floor)
         )
     found = target.observe(picture, background, shown).log_prob(states) * 2 * CONFIG.spread**2
     # float32 sums of 24 terms of at most 1, over a contrast of at least 0.01: 24 * 6e-8 / 0.01 at the worst.
@@ -77,8 +77,8 @@ def test_what_is_hidden_is_not_learnt(scene: tuple[np.ndarray, np.ndarray]) -> N
     np.testing.assert_allclose(hidden.sum(axis=1) / 3, [1, 1, 0.1], atol=1e-6)
     assert target.updated(hidden) is target
     seen = target.observe(picture, background).histogram(OTHER)
-    learnt = target.updated(seen).histograms
-    np.testing.assert_allclose(learnt, 0.95 * target.histograms + 0.05 * seen, atol=1e-6)
+    learnt = target.updated(seen).histogram
+    np.testing.assert_allclose(learnt, 0.95 * target.histogram + 0.05 * seen, atol=1e-6)
     assert target.observe(picture, background).likeness(TARGET) == pytest.approx(1, abs=1e-3)
 
 

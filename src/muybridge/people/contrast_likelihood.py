@@ -62,11 +62,11 @@ class ContrastConfig:
 class ContrastTarget:
     """What a target looks like.
 
-    histograms : (B, 24) float32, shares of each band; each channel's eight sum to 1
+    histogram : (B, 24) float32, shares of each band; each channel's eight sum to 1
     """
 
     bins: BinMap
-    histograms: NDArray[np.float32]
+    histogram: NDArray[np.float32]
     config: ContrastConfig
 
     @classmethod
@@ -88,7 +88,7 @@ class ContrastTarget:
         if counted.min() < self.config.learn_from:
             return self
         rate = np.float32(self.config.update_rate)
-        return replace(self, histograms=(1 - rate) * self.histograms + rate * seen / counted[:, None])
+        return replace(self, histogram=(1 - rate) * self.histogram + rate * seen / counted[:, None])
 
 
 @dataclass(frozen=True, eq=False)
@@ -106,13 +106,13 @@ class ContrastLikelihood:
         boxes, hull = _bands(states, config.bands)
         now, empty = (cumulative_map(image, bins, hull, self.shown) for image in (self.picture, self.background))
         out = np.empty(len(boxes))
-        roots = np.sqrt(self.target.histograms)
+        roots = np.sqrt(self.target.histogram)
         contrast_scores(now.table, empty.table, now.left, now.top, boxes, roots, np.float32(config.floor), out)
         return 0.5 * out / config.spread**2
 
     def likeness(self, state: FloatArray) -> float:
-        """0 to 1, of one box (>= 4,): 1 for what looks as the target did."""
-        return float(np.exp(self.log_prob(state[None])[0] - 0.5 / self.target.config.spread**2))
+        """0 to 1, of one box (>= 4,): 1 for the target as it was, 0 for background, 1/2 where nothing is seen."""
+        return float(np.clip(0.5 + self.target.config.spread**2 * self.log_prob(state[None])[0], 0, 1))
 
     def histogram(self, state: FloatArray) -> NDArray[np.float32]:
         """(B, 24) of one box (>= 4,): shares of all pixels of each band; what is not seen is missing from the sums."""
