@@ -23,7 +23,7 @@ from muybridge.people.repair import mended
 
 PLACE_SD = 0.12
 """Of the body's height: how far a part is from where it was on the body when cut. With the gait it moves by 0.04, but
-the body's box is itself off by up to 0.2 where hair has the wall's colour or somebody crosses. 0.04 lost more heads than
+the body's box is itself off by up to 0.2 where hair is like the wall or somebody crosses. 0.04 lost more heads than
 0.07 (seeds 9102 and 9103); 0.12 lost fewer yet, but was tried only together with a sharper likelihood."""
 SIZE_SD = 0.15  # of its own size
 SPEED_SD = 0.04  # of the body's height per frame, at the start
