@@ -68,6 +68,12 @@ def test_parts_start_right(hall: ClipPictures) -> None:
     assert result.right[1][0].startswith("111") and result.right[3][0].startswith("111")
 
 
+def test_one_box_has_no_parts(hall: ClipPictures) -> None:
+    result = RateTrial(CLIP, "one box").measure(hall)
+    assert [len(texts) for texts in result.right] == [0, 0, 0, 1]
+    assert result.right[3][0].startswith("111") and np.isnan(result.rate(0, 0, 10)) and result.rate(3, 0, 2) == 1
+
+
 def test_fitted_bins_are_mistaken_less(hall: ClipPictures) -> None:
     """6.2.3: a tenth in the thesis; here at most as many."""
     fitted, even = (AlarmTrial(CLIP, mapping, boxes=200, pictures=3).measure(hall) for mapping in (True, False))
@@ -80,7 +86,7 @@ def test_rates_by_hand(tmp_path: Path) -> None:
     lost = "1" * 50 + "0" * 70
     texts = (("1" * 120, lost, "0" * 60), *[("1" * 120, "1" * 120, "0" * 60)] * 3)
     cases = list(RATES.cases(QUICK))
-    assert [case.label for case in cases[:4]] == list(CONDITIONS)
+    assert [case.label for case in cases[: len(CONDITIONS)]] == list(CONDITIONS)
     report = RATES.report(outcome(cases, [RateResult(texts)] * len(cases), tmp_path))
     table = report.tables[0]
     assert [cell.mean for cell in table.rows[0][1:5]] == [0.5, 1.0, 1.0, 1.0] and table.rows[0][5] == 4  # two seeds
@@ -93,7 +99,7 @@ def test_tables_of_boxes_and_alarms(tmp_path: Path) -> None:
     assert {case.trial.particles for case in cases} <= set(PARTICLES)
     results = [BoxResult(5.0 if case.trial.method == "ours" else 10.0, 100.0, 3) for case in cases]
     table = BOXES.report(outcome(cases, results, tmp_path)).tables[0]
-    assert [row[2].mean for row in table.rows] == [5.0, 5.0, 10.0, 10.0] and table.rows[0][7] == 6
+    assert [row[2].mean for row in table.rows] == [5.0, 5.0, 10.0, 10.0, 10.0, 10.0] and table.rows[0][7] == 6
     alarms = list(ALARMS.cases(QUICK))
     results = [AlarmResult((100, 100, 100), (1, 0, 2) if case.trial.mapping else (10, 10, 10)) for case in alarms]
     table = ALARMS.report(outcome(alarms, results, tmp_path)).tables[0]

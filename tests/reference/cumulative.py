@@ -16,6 +16,35 @@ def shares(image: np.ndarray, lanes: np.ndarray, box: np.ndarray) -> np.ndarray:
     return counts / max(1, len(part))
 
 
+def contrast_score(
+    picture: np.ndarray,
+    background: np.ndarray,
+    shown: np.ndarray,
+    lanes: np.ndarray,
+    boxes: np.ndarray,
+    known: np.ndarray,
+    floor: float,
+) -> float:
+    """Mean over bands, boxes (B, 4), of v (min(|z - b|^2, c^2) - |z - x|^2) / c^2; known (B, 24) is x^2."""
+    total = 0.0
+    for box, own in zip(boxes, known, strict=True):
+        left, top, right, bottom = (int(edge) for edge in box)
+        counts, counted = np.zeros((2, 24)), 0
+        for y in range(max(0, top), min(bottom, picture.shape[0])):
+            for x in range(max(0, left), min(right, picture.shape[1])):
+                if shown[y, x]:
+                    counted += 1
+                    for channel in range(3):
+                        counts[0, lanes[channel, picture[y, x, channel]]] += 1
+                        counts[1, lanes[channel, background[y, x, channel]]] += 1
+        if counted:
+            z, b = np.sqrt(counts / counted)
+            c = max(float(np.sum((np.sqrt(own) - b) ** 2)), floor**2)
+            away = min(float(np.sum((z - b) ** 2)), c) - float(np.sum((z - np.sqrt(own)) ** 2))
+            total += counted / ((right - left) * (bottom - top)) * away / c
+    return total / len(boxes)
+
+
 def ellipse_histogram(image: np.ndarray, state: np.ndarray) -> np.ndarray:
     """(512,) Nummiaro's: weights 1 - r^2 with r = d / sqrt(Hx^2 + Hy^2), pixels of the ellipse."""
     x, y, a, b = state[0], state[1], state[2] / 2, state[3] / 2

@@ -27,8 +27,8 @@ _LANE, _SHIFT1, _SHIFT2 = np.uint64(LARGEST_BOX), np.uint64(LANE_BITS), np.uint6
 
 
 @kernel
-def fill_table(image, ones, table):
-    """Fill table (H + 1, W + 1, WORDS) uint64 from image (H, W, 3) uint8.
+def fill_table(image, shown, ones, table):
+    """Fill table (H + 1, W + 1, WORDS) uint64 from image (H, W, 3) uint8, of the pixels that are shown (H, W) bool.
 
     ones : (3, 256, WORDS) uint64, a one in the lane of each value's bin; channel 0 has words 0-2, 1 has 2-5, 2 has 5-7.
     """
@@ -38,9 +38,10 @@ def fill_table(image, ones, table):
         table[y + 1, 0] = np.uint64(0)
         s0 = s1 = s2 = s3 = s4 = s5 = s6 = s7 = np.uint64(0)  # this row so far
         for x in range(width):
-            a, b, c = ones[0, image[y, x, 0]], ones[1, image[y, x, 1]], ones[2, image[y, x, 2]]
-            s0, s1, s2, s3 = s0 + a[0], s1 + a[1], s2 + a[2] + b[2], s3 + b[3]
-            s4, s5, s6, s7 = s4 + b[4], s5 + b[5] + c[5], s6 + c[6], s7 + c[7]
+            if shown[y, x]:
+                a, b, c = ones[0, image[y, x, 0]], ones[1, image[y, x, 1]], ones[2, image[y, x, 2]]
+                s0, s1, s2, s3 = s0 + a[0], s1 + a[1], s2 + a[2] + b[2], s3 + b[3]
+                s4, s5, s6, s7 = s4 + b[4], s5 + b[5] + c[5], s6 + c[6], s7 + c[7]
             above, here = table[y, x + 1], table[y + 1, x + 1]
             here[0], here[1], here[2], here[3] = above[0] + s0, above[1] + s1, above[2] + s2, above[3] + s3
             here[4], here[5], here[6], here[7] = above[4] + s4, above[5] + s5, above[6] + s6, above[7] + s7
@@ -122,6 +123,42 @@ def ratio_distances(now, empty, left, top, boxes, target, floor, out):
             to_target += (z[lane] - target[lane]) ** 2
             to_background += (z[lane] - b[lane]) ** 2
         out[n] = math.sqrt(to_target) / max(math.sqrt(to_background), floor)
+
+
+@kernel
+def contrast_scores(now, empty, left, top, bands, roots, floor, out):
+    """Fill out (N,) float64 with the mean over bands of v (min(|z - b|^2, c^2) - |z - x|^2) / c^2.
+
+    Here z, b and x are square roots of shares, c is the larger of |x - b| and the floor, and v is the share of the
+    band's pixels that was counted: those that are in the picture and shown. A band without them says nothing.
+
+    now, empty : (H + 1, W + 1, WORDS) uint64, tables of the picture and of the background, see `box_histograms`;
+    bands : (N, B, 4) int64, see `cut`; roots : (B, LANES) float32, x of each band.
+    """
+    height, width = now.shape[0] - 1, now.shape[1] - 1
+    z, b = np.empty(LANES, np.float32), np.empty(LANES, np.float32)
+    for n in range(bands.shape[0]):
+        total = 0.0
+        for band in range(bands.shape[1]):
+            box = bands[n, band]
+            x0, y0, x1, y1 = cut(box, left, top, width, height)
+            pixels = _shares(now, x0, y0, x1, y1, z)
+            _shares(empty, x0, y0, x1, y1, b)
+            counted = np.float32(0)
+            for lane in range(BINS):
+                counted += z[lane]
+            if pixels == 0 or counted == 0:
+                continue
+            to_target = to_background = contrast = np.float32(0)
+            for lane in range(LANES):
+                seen, bare, own = math.sqrt(z[lane] / counted), math.sqrt(b[lane] / counted), roots[band, lane]
+                to_target += (seen - own) ** 2
+                to_background += (seen - bare) ** 2
+                contrast += (own - bare) ** 2
+            contrast = max(contrast, floor * floor)
+            share = counted * pixels / ((box[2] - box[0]) * (box[3] - box[1]))
+            total += share * (min(to_background, contrast) - to_target) / contrast
+        out[n] = total / bands.shape[1]
 
 
 @kernel

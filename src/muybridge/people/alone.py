@@ -1,7 +1,8 @@
-"""One person followed by parts alone, as the thesis does: colours, failure detection and repair (Zhao 2009, ch. 4, 5).
+"""One person followed by colours alone, as the thesis does: by parts, with failure detection and repair, or by one box.
 
 `tracker` follows bodies by the foreground and parts on them. Here the body is where the parts say it is: this is what
-the thesis' experiments measure, and what failure detectors are trained on.
+the thesis' experiments measure, and what failure detectors are trained on (Zhao 2009, ch. 4, 5). `BodyAlone` is what
+they are compared with in Fig. 6.15 (d): a single box, followed as a part is.
 """
 
 from __future__ import annotations
@@ -11,8 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from muybridge.filters.particles import FloatArray
-from muybridge.people.filtered import Frame
-from muybridge.people.part_filters import PartRules, Parts
+from muybridge.people.filtered import Filtered, Frame
+from muybridge.people.part_filters import SPEED_SD, PartRules, Parts, Unknown
 from muybridge.people.person import TRUST_WHOLE
 
 
@@ -40,6 +41,44 @@ class PartsAlone:
         found = self.parts.step(expected, frame, trusted)
         self.body = body_of(self.parts, expected)
         return found
+
+    @property
+    def states(self) -> FloatArray:
+        """(3, 6) of the parts."""
+        return self.parts.states
+
+
+@dataclass(eq=False)
+class BodyAlone:
+    """A person who is one box; nothing is told of failures, and nothing is repaired."""
+
+    box: Filtered
+    rules: PartRules
+    rng: np.random.Generator
+
+    @classmethod
+    def start(cls, rng: np.random.Generator, body: FloatArray, frame: Frame, rules: PartRules) -> BodyAlone:
+        """From a body (>= 4,) that is clear to see."""
+        speed_sd = SPEED_SD * float(body[3])
+        return cls(Filtered.start(rng, body, frame, rules.motion, rules.colour, speed_sd), rules, rng)
+
+    def step(self, frame: Frame) -> None:
+        """One frame: colours while enough can be seen, else the dynamics alone, and nothing is learnt (5.4)."""
+        colour = self.box.target.observe(frame.picture, frame.background)
+        trusted = frame.evidence.seen(self.box.expected)[0] >= TRUST_WHOLE
+        self.box.step(self.rng, colour if trusted else Unknown(), self.rules.motion, self.rules.counts)
+        if trusted:
+            self.box.target = self.box.target.updated(colour.histogram(self.body))
+
+    @property
+    def body(self) -> FloatArray:
+        """(6,) the estimate."""
+        return self.box.box
+
+    @property
+    def states(self) -> FloatArray:
+        """(1, 6) of the box."""
+        return self.body[None]
 
 
 def body_of(parts: Parts, expected: FloatArray) -> FloatArray:

@@ -28,6 +28,7 @@ from numpy.typing import NDArray
 from muybridge._kernels.cumulative import ratio_distances, round_boxes
 from muybridge.errors import InputError
 from muybridge.filters.particles import FloatArray
+from muybridge.people.blobs import Mask
 from muybridge.people.histograms import BinMap, CumulativeMap, Hull, cumulative_map
 
 Picture = NDArray[np.uint8]
@@ -69,8 +70,8 @@ class ColourTarget:
         histogram = cumulative_map(inside, bins).histograms(np.array([[0, 0, inside.shape[1], inside.shape[0]]]))[0]
         return cls(bins, histogram, config)
 
-    def observe(self, picture: Picture, background: Picture) -> ColourLikelihood:
-        """One frame: picture and background (H, W, 3) uint8, Y Cr Cb."""
+    def observe(self, picture: Picture, background: Picture, shown: Mask | None = None) -> ColourLikelihood:
+        """One frame: picture and background (H, W, 3) uint8, Y Cr Cb; what is shown is not asked."""
         return ColourLikelihood(self, picture, background)
 
     def updated(self, seen: NDArray[np.float32]) -> ColourTarget:
@@ -103,6 +104,10 @@ class ColourLikelihood:
     def log_prob(self, states: FloatArray) -> FloatArray:
         """-D^2 / (2 Sigma), (4.12) without its constant. states : (N, >= 4); returns (N,)."""
         return -0.5 * np.square(self.distances(states) / self.target.config.spread)
+
+    def likeness(self, state: FloatArray) -> float:
+        """0 to 1, of one box (>= 4,): 1 for what looks as the target did."""
+        return float(np.exp(self.log_prob(state[None])[0]))
 
     def histogram(self, state: FloatArray) -> NDArray[np.float32]:
         """(24,) of one box (>= 4,): z, or Q_t of (4.10)."""

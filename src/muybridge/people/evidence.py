@@ -62,6 +62,12 @@ class Evidence:
                 raise InputError("occluders", expected=f"the masks' {mask.shape}", got=str(hidden.shape))
             self.weights[hidden] = 0
 
+    @property
+    def shown(self) -> Mask:
+        """(H, W) bool: what nobody nearer and no occluder covers."""
+        shown: Mask = self.weights > 0
+        return shown
+
     def explain(self, state: FloatArray, share: float | None = None) -> None:
         """What the middle of this box (>= 4,) covers says nothing about those behind it."""
         self.weights[middle(state, self.config.core if share is None else share)] = 0

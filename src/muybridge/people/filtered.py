@@ -12,7 +12,12 @@ from muybridge.filters.schedule import exponent_for_survival, powered
 from muybridge.filters.state import Likelihood, State
 from muybridge.people.box import SPEED_X, BoxMotion, CountConfig, Y, adapted_count
 from muybridge.people.colour_likelihood import ColourConfig, ColourTarget, Picture
+from muybridge.people.contrast_likelihood import ContrastConfig, ContrastTarget
 from muybridge.people.evidence import Evidence
+
+Colour = ColourConfig | ContrastConfig
+Target = ColourTarget | ContrastTarget
+"""By (4.13), the thesis'; or in units of the target's own contrast, ours. What is configured decides."""
 
 FILTER = condensation.Config(estimate="mean", resampling="systematic", particles=600)
 """(4.5) is the mean; the comb adds less variance than (4.8), (4.9) with independent numbers."""
@@ -37,7 +42,7 @@ class Filtered:
     """A box and what it looks like."""
 
     state: State
-    target: ColourTarget
+    target: Target
 
     @property
     def box(self) -> FloatArray:
@@ -58,14 +63,14 @@ class Filtered:
         box: FloatArray,
         frame: Frame,
         motion: BoxMotion,
-        colour: ColourConfig,
+        colour: Colour,
         speed_sd: float,
     ) -> Filtered:
         """All particles at one place (>= 4,), with velocities drawn at random (4.1.1): `speed_sd`, pixels per frame."""
         mean = np.concatenate([box[:SPEED_X], np.zeros(2)])
         sd = np.array([START_SD] * 4 + [speed_sd] * 2)
         state = condensation.init(rng, mean, sd, FILTER, motion.lower, motion.upper)
-        return cls(state, ColourTarget.learn(frame.picture, mean, colour))
+        return cls(state, learn(frame.picture, mean, colour))
 
     def step(self, rng: np.random.Generator, likelihood: Likelihood, motion: BoxMotion, counts: CountConfig) -> None:
         """One frame, with as many particles as the last weights ask for (4.18)."""
@@ -73,3 +78,10 @@ class Filtered:
         exponent = exponent_for_survival(self.state.log_weights, SURVIVAL, highest=1.0)
         selecting = replace(self.state, log_weights=powered(self.state.log_weights, exponent))
         self.state, _ = condensation.step(rng, selecting, likelihood, motion, config)
+
+
+def learn(picture: Picture, box: FloatArray, colour: Colour) -> Target:
+    """What a box (>= 4,) of a picture (H, W, 3) uint8, Y Cr Cb, looks like."""
+    if isinstance(colour, ContrastConfig):
+        return ContrastTarget.learn(picture, box, colour)
+    return ColourTarget.learn(picture, box, colour)

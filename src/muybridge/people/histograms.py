@@ -132,12 +132,20 @@ class CumulativeMap:
         return empty or fits
 
 
-def cumulative_map(image: NDArray[np.uint8], bins: BinMap, around: Hull | None = None) -> CumulativeMap:
-    """(4.16) over the part `around` of a picture (H, W, 3) uint8, Y Cr Cb; None: all of it."""
+def cumulative_map(
+    image: NDArray[np.uint8], bins: BinMap, around: Hull | None = None, shown: NDArray[np.bool_] | None = None
+) -> CumulativeMap:
+    """(4.16) over the part `around` of a picture (H, W, 3) uint8, Y Cr Cb; None: all of it.
+
+    shown : (H, W) bool, the pixels that are counted; None: all
+    """
     left, top, right, bottom = inside(around or (0, 0, image.shape[1], image.shape[0]), image.shape)
     part = np.ascontiguousarray(image[top:bottom, left:right])
+    counted = (
+        np.ones(part.shape[:2], np.bool_) if shown is None else np.ascontiguousarray(shown[top:bottom, left:right])
+    )
     table = np.empty((part.shape[0] + 1, part.shape[1] + 1, WORDS), np.uint64)
-    fill_table(part, bins.ones, table)
+    fill_table(part, counted, bins.ones, table)
     return CumulativeMap(table, left, top)
 
 

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from muybridge.filters.particles import FloatArray
-from muybridge.people.alone import PartsAlone
+from muybridge.people.alone import BodyAlone, PartsAlone
 from muybridge.people.box import states_from_boxes
 from muybridge.people.colour_likelihood import Picture
 from muybridge.people.evidence import Evidence
@@ -22,6 +22,7 @@ from muybridge.people.part_filters import PartRules
 from muybridge.people.silhouette import Silhouette
 from muybridge.synthetic.crowd import PeopleShot
 
+Alone = PartsAlone | BodyAlone
 WHOLE = 0.95  # share of a person that must be seen to start
 
 
@@ -29,7 +30,7 @@ WHOLE = 0.95  # share of a person that must be seen to start
 class LabelledTrack:
     """One person from a start on, T frames.
 
-    states : (T, 3, 6) of the parts; bodies : (T, 6), as the parts have it
+    states : (T, 3, 6) of the parts, or (T, 1, 6) of the one box; bodies : (T, 6), as the parts have it
     true_parts : (T, 3, 4), true_bodies : (T, 4), left, top, width, height
     visible : (T, 3) share of each part that nothing hides
     """
@@ -45,7 +46,7 @@ class LabelledTrack:
 @dataclass
 class _Followed:
     person: int
-    tracker: PartsAlone
+    tracker: Alone
     rows: list[tuple[FloatArray, ...]] = field(default_factory=list)
 
     def finished(self) -> LabelledTrack:
@@ -60,6 +61,7 @@ def follow_labelled(
     *,
     most: int,
     again: bool = False,
+    one_box: bool = False,
 ) -> list[LabelledTrack]:
     """Everybody from the first frame that shows them whole, up to `most` frames or until they leave.
 
@@ -67,7 +69,9 @@ def follow_labelled(
     ----------
     empty : (H, W, 3) uint8 BGR, the scene without people
     again : start anew at the truth after `most` frames
+    one_box : each is one box, instead of parts that are repaired if the rules say so
     """
+    kind: type[Alone] = BodyAlone if one_box else PartsAlone
     background = to_luma_chroma(empty)
     size = empty.shape[1], empty.shape[0]
     following: dict[int, _Followed] = {}
@@ -87,11 +91,11 @@ def follow_labelled(
                 continue
             else:
                 body = states_from_boxes(shot.boxes[k])[0]
-                tracker = PartsAlone.start(rng.spawn(1)[0], body, frame, rules)
+                tracker = kind.start(rng.spawn(1)[0], body, frame, rules)
                 if tracker is None:
                     continue
                 one = following[person] = _Followed(person, tracker)
-            one.rows.append((one.tracker.parts.states, one.tracker.body, shot.parts[k], shot.boxes[k],
+            one.rows.append((one.tracker.states, one.tracker.body, shot.parts[k], shot.boxes[k],
                              shot.parts_visible[k]))  # fmt: skip
             if len(one.rows) == most:
                 done.append(following.pop(person).finished())

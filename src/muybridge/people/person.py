@@ -115,7 +115,7 @@ def follow(
     """One frame of the body's filter; `behind` are boxes (>= 4,) of others who are expected further away."""
     body, evidence = person.body, frame.evidence
     ground = None if ground is None else ground.of_stature(person.stature)
-    colour = body.target.observe(frame.picture, frame.background)
+    colour = body.target.observe(frame.picture, frame.background, evidence.shown)
     cues: list[Likelihood] = [evidence.observe(usual_area(body.box, ground), behind)]
     if ground is not None:
         cues.append(ground)

@@ -21,9 +21,8 @@ import numpy as np
 from muybridge.filters.particles import FloatArray
 from muybridge.filters.state import State
 from muybridge.people.box import SPEED_X
-from muybridge.people.colour_likelihood import ColourConfig, ColourTarget
 from muybridge.people.evidence import middle
-from muybridge.people.filtered import Filtered, Frame
+from muybridge.people.filtered import Colour, Filtered, Frame, learn
 from muybridge.people.parts import PARTS, PartConfig, inner_box
 
 HEAD, TORSO, HIP_LEG = range(len(PARTS))
@@ -31,7 +30,7 @@ FEWEST = 0.15  # share of a section that must be foreground to say where the par
 
 
 def mended(
-    filters: Sequence[Filtered], index: int, body: FloatArray, frame: Frame, cut: PartConfig, colour: ColourConfig
+    filters: Sequence[Filtered], index: int, body: FloatArray, frame: Frame, cut: PartConfig, colour: Colour
 ) -> Filtered:
     """The part `index` anew: its place from the others, their velocities, and what it looks like there.
 
@@ -47,7 +46,7 @@ def mended(
     speed = np.mean([part.box[SPEED_X:] for part in others], axis=0)
     estimate = np.concatenate([box, speed])
     state = State(particles, np.full(len(particles), -np.log(len(particles))), estimate, filters[index].state.velocity)
-    return Filtered(state, ColourTarget.learn(frame.picture, estimate, colour))
+    return Filtered(state, learn(frame.picture, estimate, colour))
 
 
 def torso_between(head: FloatArray, hip_leg: FloatArray) -> FloatArray:

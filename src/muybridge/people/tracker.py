@@ -21,6 +21,7 @@ from muybridge.filters.particles import FloatArray
 from muybridge.people.blobs import BlobConfig, Mask, find_people
 from muybridge.people.box import PRINTED_VARIANCES, BoxMotion, CountConfig, boxes_from_states, states_from_boxes
 from muybridge.people.colour_likelihood import ColourConfig, Picture
+from muybridge.people.contrast_likelihood import ContrastConfig
 from muybridge.people.detect import Places, find_standing
 from muybridge.people.evidence import Evidence, ForegroundConfig
 from muybridge.people.failure import FailureDetector
@@ -45,7 +46,7 @@ class TrackerConfig:
     """Settings of the tracker; times are seconds of the video."""
 
     colour: ColourConfig = ColourConfig(spread=0.6)  # of the whole body
-    part_colour: ColourConfig = ColourConfig(spread=0.6)
+    part_colour: ContrastConfig = ContrastConfig(bands=2, spread=0.3)
     look: ColourConfig = ColourConfig(update_rate=0.1)  # by which people are told apart after they met
     foreground: ForegroundConfig = ForegroundConfig()
     identity: IdentityConfig = IdentityConfig()

@@ -28,12 +28,18 @@ from muybridge.people.repair_training import thesis_rules
 from muybridge.people.scene import describe
 from muybridge.people.tracker import PeopleTracker
 
-CONDITIONS = ("no repair", "repair", "ours", "ours, repair")
-"""The thesis' tracker without and with repair; `muybridge people`, which follows bodies too, without and with it."""
+CONDITIONS = ("one box", "no repair", "repair", "ours", "ours, repair")
+"""A single box a person, which is what the whole body is compared with in Fig. 6.15 (d); the thesis' three parts
+without and with repair; `muybridge people`, which follows bodies too, without and with it."""
 FRAME, NEAR = 105, 5
 """The thesis' frame, and how many frames to either side are averaged."""
 TARGETS = (*PARTS, "whole")
-PRINTED = {"no repair": (0.67, 0.68, 0.64, 0.75), "repair": (0.95, 0.83, 0.91, 0.95)}
+UNKNOWN = float("nan")
+PRINTED = {
+    "one box": (UNKNOWN, UNKNOWN, UNKNOWN, 0.75),
+    "no repair": (0.67, 0.68, 0.64, UNKNOWN),
+    "repair": (0.95, 0.83, 0.91, 0.95),
+}
 """Fig. 6.15 at frame 105: head, torso, hip-leg, whole body."""
 MOST = 150  # frames
 RIGHT = 0.5
@@ -43,7 +49,7 @@ LEAST_PIXELS = 250  # of a region that may be a person
 
 @dataclass(frozen=True)
 class RateResult:
-    """right : for each target, for each person, a text of 0 and 1, one a frame."""
+    """right : for each target, for each person, a text of 0 and 1, one a frame; none for a target not followed."""
 
     right: tuple[tuple[str, ...], ...]
 
@@ -64,18 +70,24 @@ class RateTrial(PeopleTrial):
         """Follow everybody by their parts."""
         repaired = self.condition in ("repair", "ours, repair")
         detector = detector_named("shipped" if repaired else "none")
-        follow = _by_people_tracker if self.condition.startswith("ours") else _by_parts_alone
+        follow = FOLLOW.get(self.condition, _by_parts_alone)
         right: list[list[str]] = [[] for _ in TARGETS]
         for boxes, true_parts, true_bodies in follow(self.clip, pictures, detector):
-            parts = coverage(boxes, true_parts) >= RIGHT
             whole = coverage(around(boxes), true_bodies) >= RIGHT
-            for target, flags in enumerate([*parts.T, whole]):
-                right[target].append("".join("01"[int(flag)] for flag in flags))
+            right[-1].append(_text(whole))
+            if self.condition != "one box":
+                for target, flags in enumerate((coverage(boxes, true_parts) >= RIGHT).T):
+                    right[target].append(_text(flags))
         return RateResult(tuple(tuple(texts) for texts in right))
 
 
+def _text(flags: np.ndarray) -> str:
+    return "".join("01"[int(flag)] for flag in flags)
+
+
 Followed = tuple[np.ndarray, np.ndarray, np.ndarray]
-"""Of one person: boxes (T, 3, 4) of the parts, the true ones, and the true body's (T, 4); left, top, width, height."""
+"""Of one person, left, top, width, height: boxes (T, 3, 4) of the parts, or (T, 1, 4) of the one box; the true parts'
+(T, 3, 4), and the true body's (T, 4)."""
 
 
 def _by_parts_alone(clip: PeopleClip, pictures: ClipPictures, detector: FailureDetector | None) -> Iterator[Followed]:
@@ -83,6 +95,14 @@ def _by_parts_alone(clip: PeopleClip, pictures: ClipPictures, detector: FailureD
     rules = replace(thesis_rules(clip.size, clip.rate), detector=detector)
     rng = np.random.default_rng([clip.seed, 6])
     for track in follow_labelled(rng, pictures.shots, pictures.empty, rules, most=MOST):
+        yield as_boxes(track.states), track.true_parts, track.true_bodies
+
+
+def _by_one_box(clip: PeopleClip, pictures: ClipPictures, detector: FailureDetector | None) -> Iterator[Followed]:
+    """The thesis' single whole-body tracker, "the same as that for the body part" (6.3.2)."""
+    rng = np.random.default_rng([clip.seed, 6])
+    rules = thesis_rules(clip.size, clip.rate)
+    for track in follow_labelled(rng, pictures.shots, pictures.empty, rules, most=MOST, one_box=True):
         yield as_boxes(track.states), track.true_parts, track.true_bodies
 
 
@@ -102,6 +122,10 @@ def _by_people_tracker(
         rows = _rows_of(person, pictures, boxes, clip.size)
         if rows:
             yield tuple(np.array(column) for column in zip(*rows, strict=True))  # type: ignore[misc]
+
+
+FOLLOW = {"one box": _by_one_box, "ours": _by_people_tracker, "ours, repair": _by_people_tracker}
+"""How each condition follows; by parts alone where nothing is said."""
 
 
 def _rows_of(
@@ -127,7 +151,7 @@ def _rows_of(
 
 
 def cases_of_rates(scale: Amount) -> Iterator[Case]:
-    """Four conditions on one clip a seed."""
+    """Every condition on one clip a seed."""
     for clip in people_clips(scale.seeds):
         for condition in CONDITIONS:
             yield Case(condition, RateTrial(clip, condition))
@@ -144,7 +168,7 @@ def report_of_rates(outcome: Outcome) -> Report:
     for condition, group in outcome.groups().items():
         cells = [over_seeds({row.key: row.result.rate(k, FRAME - NEAR, FRAME + NEAR) for row in group})
                  for k in range(len(TARGETS))]  # fmt: skip
-        people = sum(len(text) > FRAME - NEAR for row in group for text in row.result.right[0])
+        people = sum(len(text) > FRAME - NEAR for row in group for text in row.result.right[-1])
         rows.append((condition, *cells, people))
         curves[condition] = [_curve(group, k) for k in range(len(TARGETS))]
     rows += [(f"thesis, {name}", *values, 72) for name, values in PRINTED.items()]
