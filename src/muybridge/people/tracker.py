@@ -218,8 +218,9 @@ class PeopleTracker:
         clear = {person for person, is_alone in zip(people, alone) if is_alone and self._is_whole(person)}
         self._identities.step(frame.picture, frame.number, people, clear, self.gone)
         for person in clear:
-            if self.scene.ground is not None:
-                person.measure(self.scene.ground, 1 / (1 + MEASURED_S * self._rate))
+            outline = frame.evidence.outline(person.body.box)
+            if self.scene.ground is not None and outline is not None:
+                person.measure(outline, self.scene.ground, 1 / (1 + MEASURED_S * self._rate))
         for person in people:
             if person in clear and person.parts is None:
                 person.parts = Parts.start(person.rng, person.body.box, frame, self._rules)
