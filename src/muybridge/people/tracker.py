@@ -59,7 +59,7 @@ class TrackerConfig:
     clear: float = 0.1  # share of its size round everybody's box where nobody new is looked for
     confirm_s: float = 0.4  # seen for so long, somebody is believed in
     patience_s: float = 0.8  # and given up after so long unseen,
-    patience_hidden_s: float = 2.5  # or so long hidden,
+    patience_hidden_s: float = 5.0  # or so long hidden,
     doubled_s: float = 1.0  # or so long in the same place as somebody else
 
     def __post_init__(self) -> None:
