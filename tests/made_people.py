@@ -25,6 +25,7 @@ class Walker:
     last: int
     clothes: int = 0
     stature: float = 1.0
+    breadth: float = 1.0
 
     def feet(self, frame: int) -> tuple[float, float] | None:
         """Column and row of the feet; None outside the frames."""
@@ -39,7 +40,8 @@ class Walker:
         if feet is None:
             return None
         height = self.stature * (OFFSET + SLOPE * feet[1])
-        return np.array([feet[0] - ASPECT * height / 2, feet[1] - height, ASPECT * height, height])
+        width = self.breadth * ASPECT * height
+        return np.array([feet[0] - width / 2, feet[1] - height, width, height])
 
 
 def empty_scene(seed: int = 0) -> np.ndarray:

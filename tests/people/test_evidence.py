@@ -43,6 +43,24 @@ def test_in_closed_form() -> None:
     assert evidence.seen(state[0]) == (1.0, 20 / 30)
 
 
+def test_an_outline_is_of_all_that_is_near_but_scraps() -> None:
+    """A box of 10 x 20 about (20, 20), looked at 12 x 24: rows 8 to 31, columns 14 to 25."""
+    state = states_from_boxes(np.array([[15, 10, 10, 20]]))[0]
+    mask = np.zeros((60, 60), bool)
+    mask[12:22, 17:23] = mask[25:31, 18:20] = True  # 60 pixels, and legs of 12: more than 0.15 of that
+    mask[9, 14] = True  # a scrap
+    mask[40:50, 40:50] = True  # somebody else
+    outline = Evidence(mask, Silhouette.flat()).outline(state)
+    np.testing.assert_array_equal(outline, [(17 + 22) / 2, (12 + 30) / 2, 6, 19])
+
+
+@pytest.mark.parametrize("place", [(slice(0, 0), slice(0, 0)), (slice(0, 20), slice(17, 23))])
+def test_nothing_and_what_leaves_the_picture_have_no_outline(place: tuple[slice, slice]) -> None:
+    mask = np.zeros((60, 60), bool)
+    mask[place] = True
+    assert Evidence(mask, Silhouette.flat()).outline(states_from_boxes(np.array([[15, 2, 10, 20]]))[0]) is None
+
+
 def test_the_best_place_is_where_the_person_is(silhouette: Silhouette) -> None:
     """Cells are fifths of the width, 4 pixels: within two pixels across, and two of the feet."""
     mask, (state,) = standing((150.0, 170.0))

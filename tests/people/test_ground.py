@@ -65,7 +65,7 @@ def test_people_cut_short_do_not_flatten_it(monkeypatch: pytest.MonkeyPatch) -> 
 
 def test_a_child_on_the_same_ground() -> None:
     ground = GroundScale(10.0, 0.3, 0.4)
-    np.testing.assert_allclose(ground.of_stature(0.7).height(200.0), 0.7 * ground.height(200.0))
+    np.testing.assert_allclose(ground.of_person(0.7).height(200.0), 0.7 * ground.height(200.0))
 
 
 def test_too_few_say_nothing() -> None:

@@ -130,6 +130,16 @@ def test_a_child_has_a_box_of_its_own_height() -> None:
     assert ground is not None and abs(ground.height(160.0) - 60) < 2
 
 
+def test_somebody_slim_has_a_narrower_box() -> None:
+    """Two thirds of the usual breadth, and so is the box but for a pixel or two of some 18: a tenth."""
+    slim = replace(CROSSING[0], breadth=2 / 3)
+    widths = []
+    for walker in (slim, CROSSING[0]):
+        boxes = tracked([walker], 50).tracks().boxes
+        widths.append(boxes.boxes[(boxes.frames >= 30) & (boxes.frames < 48), 2].mean())
+    assert abs(widths[0] / widths[1] - 2 / 3) < 0.1
+
+
 def test_the_seed_decides_and_nothing_else() -> None:
     first, again, other = (tracked(CROSSING, 12, seed=seed).tracks() for seed in (5, 5, 6))
     np.testing.assert_array_equal(first.boxes.boxes, again.boxes.boxes)

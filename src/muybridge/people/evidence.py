@@ -25,6 +25,8 @@ from muybridge.people.colour_likelihood import pixel_boxes
 from muybridge.people.histograms import Hull, inside
 from muybridge.people.silhouette import Silhouette
 
+AROUND = 0.2  # of a box's size: how far an outline may be larger
+SCRAP = 0.15  # of the largest region: what is smaller is none of a person
 Place = tuple[slice, slice]
 """Rows and columns."""
 
@@ -79,6 +81,26 @@ class Evidence:
         count = int(np.count_nonzero(visible))
         full = int(np.count_nonzero(visible & self.mask[place]))
         return count / max(1.0, float(state[2] * state[3])), full / max(1, count)
+
+    def outline(self, state: FloatArray) -> FloatArray | None:
+        """(4,) centre, width, height of the foreground in and just around a box (>= 4,), without scraps.
+
+        None where there is none, or where it goes on beyond the picture.
+        """
+        import cv2
+
+        rows, columns = middle(state[:4] * np.array([1, 1, 1 + AROUND, 1 + AROUND]), 1.0)
+        part = np.ascontiguousarray(self.mask[rows, columns], dtype=np.uint8)
+        _, labels, regions, _ = cv2.connectedComponentsWithStats(part, connectivity=8)
+        areas = regions[1:, cv2.CC_STAT_AREA]
+        if not areas.size:
+            return None
+        kept = np.concatenate([[False], areas >= SCRAP * areas.max()])[labels]
+        y, x = np.flatnonzero(kept.any(axis=1)) + rows.start, np.flatnonzero(kept.any(axis=0)) + columns.start
+        low, high = np.array([x[0], y[0]]), np.array([x[-1], y[-1]])
+        if (low == 0).any() or (high == np.array(self.mask.shape[::-1]) - 1).any():
+            return None
+        return np.concatenate([(low + high) / 2, high - low + 1.0])
 
     def observe(self, area: float, behind: Sequence[FloatArray] = ()) -> ForegroundLikelihood:
         """For a person whose box is expected to have so many pixels; others (>= 4,) are expected further away."""

@@ -55,9 +55,10 @@ class GroundScale:
         """Expected heights, pixels, for rows of feet, of the same shape; at least `SHORTEST`."""
         return np.maximum(SHORTEST, self.offset + self.slope * np.asarray(feet, dtype=np.float64))
 
-    def of_stature(self, stature: float) -> GroundScale:
-        """The same for somebody who is so many times as tall as people are on average."""
-        return replace(self, offset=stature * self.offset, slope=stature * self.slope)
+    def of_person(self, stature: float, breadth: float = 1.0) -> GroundScale:
+        """The same for somebody so many times as tall, and for their height as broad, as people are on average."""
+        aspect = breadth * self.aspect
+        return replace(self, offset=stature * self.offset, slope=stature * self.slope, aspect=aspect)
 
     def standing(self, x: FloatArray, feet: FloatArray) -> FloatArray:
         """Boxes (N, 4), centre, width, height, of people of the expected size who stand at columns and rows (N,)."""

@@ -187,6 +187,7 @@ def exchange(a: Person, b: Person, frame: int) -> None:
     a.identity, b.identity = b.identity, a.identity
     a.look, b.look = b.look, a.look
     a.stature, b.stature = b.stature, a.stature
+    a.breadth, b.breadth = b.breadth, a.breadth
     a.last_clear, b.last_clear = b.last_clear, a.last_clear
     a.parts = b.parts = None  # to be cut anew
     before = [[sighting for sighting in person.sightings if sighting.frame <= frame] for person in (a, b)]

@@ -11,7 +11,7 @@ import numpy as np
 
 from muybridge.filters.particles import FloatArray
 from muybridge.filters.state import Likelihood
-from muybridge.people.box import HEIGHT, BoxMotion, CountConfig, X, Y
+from muybridge.people.box import HEIGHT, WIDTH, BoxMotion, CountConfig, X, Y
 from muybridge.people.colour_likelihood import ColourConfig, Picture
 from muybridge.people.evidence import Together
 from muybridge.people.filtered import Filtered, Frame
@@ -23,6 +23,8 @@ TRUST_COLOUR = 0.6  # share of the box that must be visible: below, the histogra
 TRUST_WHOLE = 0.8  # to learn what the person looks like
 ENOUGH_LOOKS = 4  # frames
 SHORTEST, TALLEST = 0.6, 1.25  # of people's mean height: a child of five, and hardly anybody
+NARROWEST, BROADEST = 0.6, 1.6  # of the mean of width over height
+AGREE_TALL, AGREE_WIDE = 0.15, 0.4  # logarithms: of an outline's size over the box's, for it to be believed
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,8 +55,8 @@ class Person:
         Of the box now: the share that can be seen, and the share of that which is foreground.
     looks : int
         Frames from which `look` was learnt.
-    stature : float
-        Of people's mean height.
+    stature, breadth : float
+        Of people's mean height, and of the mean of width over height.
     """
 
     identity: int
@@ -73,14 +75,20 @@ class Person:
     look: Look | None = None
     looks: int = 0
     stature: float = 1.0
+    breadth: float = 1.0
     last_clear: Sighting | None = None
     parts: Parts | None = None
 
-    def measure(self, ground: GroundScale, rate: float) -> None:
-        """Learn how tall they are; only while they are clear to see."""
+    def measure(self, outline: FloatArray, ground: GroundScale, rate: float) -> None:
+        """Learn how tall and how broad they are from the box (4,) of their foreground; only while they are clear."""
         body = self.body.box
-        seen = float(body[HEIGHT] / ground.height(feet(body)))
-        self.stature = float(np.clip(self.stature + rate * (seen - self.stature), SHORTEST, TALLEST))
+        wider, taller = np.abs(np.log(outline[WIDTH : HEIGHT + 1] / body[WIDTH : HEIGHT + 1]))
+        if taller > AGREE_TALL or wider > AGREE_WIDE:  # of somebody else too, or not of all of them
+            return
+        tall = float(body[HEIGHT] / ground.height(feet(body)))
+        broad = float(outline[WIDTH] / outline[HEIGHT] / ground.aspect)
+        self.stature = float(np.clip(self.stature + rate * (tall - self.stature), SHORTEST, TALLEST))
+        self.breadth = float(np.clip(self.breadth + rate * (broad - self.breadth), NARROWEST, BROADEST))
 
     @property
     def missing(self) -> int:
@@ -114,7 +122,7 @@ def follow(
 ) -> None:
     """One frame of the body's filter; `behind` are boxes (>= 4,) of others who are expected further away."""
     body, evidence = person.body, frame.evidence
-    ground = None if ground is None else ground.of_stature(person.stature)
+    ground = None if ground is None else ground.of_person(person.stature, person.breadth)
     colour = body.target.observe(frame.picture, frame.background, evidence.shown)
     cues: list[Likelihood] = [evidence.observe(usual_area(body.box, ground), behind)]
     if ground is not None:

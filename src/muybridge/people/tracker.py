@@ -60,7 +60,7 @@ class TrackerConfig:
     clear: float = 0.1  # share of its size round everybody's box where nobody new is looked for
     confirm_s: float = 0.4  # seen for so long, somebody is believed in
     patience_s: float = 0.8  # and given up after so long unseen,
-    patience_hidden_s: float = 2.5  # or so long hidden,
+    patience_hidden_s: float = 5.0  # or so long hidden,
     doubled_s: float = 1.0  # or so long in the same place as somebody else
 
     def __post_init__(self) -> None:
@@ -219,8 +219,9 @@ class PeopleTracker:
         clear = {person for person, is_alone in zip(people, alone) if is_alone and self._is_whole(person)}
         self._identities.step(frame.picture, frame.number, people, clear, self.gone)
         for person in clear:
-            if self.scene.ground is not None:
-                person.measure(self.scene.ground, 1 / (1 + MEASURED_S * self._rate))
+            outline = frame.evidence.outline(person.body.box)
+            if self.scene.ground is not None and outline is not None:
+                person.measure(outline, self.scene.ground, 1 / (1 + MEASURED_S * self._rate))
         for person in people:
             if person in clear and person.parts is None:
                 person.parts = Parts.start(person.rng, person.body.box, frame, self._rules)
