@@ -141,7 +141,9 @@ def _over_rows_look(image, weights, means, variances, kept, limit, nearest, dens
             _slot_distances(colours, means[y, k], variances[y, k], distances)
             _keep_nearer(distances, weights[y, k], np.int8(k), least, nearest[y])
             _slot_densities(distances, variances[y, k], kept[y], k, density)
-            _keep_density(density, weights[y, k], np.int8(k), densities[y], peaks[0, y], peaks[1, y], shown[y], alone[y])
+            _keep_density(
+                density, weights[y, k], np.int8(k), densities[y], peaks[0, y], peaks[1, y], shown[y], alone[y]
+            )
 
 
 @parallel_kernel
@@ -287,9 +289,7 @@ def mixture_look(image, weights, means, variances, kept, limit, nearest, densiti
     shown : (H, W) int8, filled: the component of the largest
     alone : (H, W) float32, filled: the density (2.1) of the mixture
     """
-    _over_rows_look(
-        image, weights, means, variances, kept, np.float32(limit), nearest, densities, peaks, shown, alone
-    )
+    _over_rows_look(image, weights, means, variances, kept, np.float32(limit), nearest, densities, peaks, shown, alone)
 
 
 def mixture_scores(image, weights, means, variances, kept, out):

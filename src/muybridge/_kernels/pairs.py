@@ -40,13 +40,14 @@ def _with_all(counts, a, i, d, densities, b):
 def _joint(counts, total, d, a, b, densities, shown, largest):
     """Sum over combinations of count times both densities.
 
+    Products of densities are float64: those of two far colours are below what float32 holds, and slow there.
     The component that the first pixel shows comes first, and none that is negligible after it; `largest` is that of
     the second pixel's densities.
     """
-    both = densities[a, shown] * _with_all(counts, a, shown, d, densities, b)
+    both = float(densities[a, shown]) * _with_all(counts, a, shown, d, densities, b)
     for i in range(counts.shape[1]):
-        if i != shown and densities[a, i] * largest * total > both * NEGLIGIBLE:
-            both += densities[a, i] * _with_all(counts, a, i, d, densities, b)
+        if i != shown and float(densities[a, i]) * largest * total > both * NEGLIGIBLE:
+            both += float(densities[a, i]) * _with_all(counts, a, i, d, densities, b)
     return both
 
 
@@ -70,11 +71,11 @@ def _partner_density(counts, totals, d, a, b, q, densities, peaks, shown, least)
     total = totals[d, a]
     if total == _0:
         return 1.0
-    both = _joint(counts, total, d, a, b, densities, shown, peaks[0, b]) / total
-    if both >= least * peaks[0, a + b - q]:
-        return max(float(both), LEAST)
+    both = _joint(counts, total, d, a, b, densities, shown, float(peaks[0, b])) / total
+    if both >= least * float(peaks[0, a + b - q]):
+        return max(both, LEAST)
     rare = max(float(_alone(counts, d, a, densities, q, q == a) / total), LEAST)
-    return max(float(both), LEAST) * (least / rare if rare < least else 1.0)
+    return max(both, LEAST) * (least / rare if rare < least else 1.0)
 
 
 @vector_kernel
@@ -90,10 +91,10 @@ def _product(p, densities, peaks, shows, counts, totals, steps, partners, least,
         if partner >= 0:
             d, q = partner >> 1, p + steps[partner]
             a, b = min(p, q), max(p, q)
-            first, second, shown = peaks[0, a], peaks[0, b], np.int64(shows[a])
+            first, second, shown = float(peaks[0, a]), float(peaks[0, b]), np.int64(shows[a])
             usual = counts[a, shown, d, np.int64(shows[b])] / totals[d, a]
             joint = usual * first * second
-            others = max(first * peaks[1, b], peaks[1, a] * second)
+            others = max(first * float(peaks[1, b]), float(peaks[1, a]) * second)
             if others <= joint * NEGLIGIBLE and usual * peaks[0, q] >= least and joint >= LEAST:
                 product *= joint
             else:
