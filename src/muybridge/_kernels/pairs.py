@@ -1,9 +1,9 @@
 """Joint colours of pairs of pixels: weights over the combinations of their components (Zhao 2009, 3.1 to 3.8).
 
 A pair (p, p + offset) is kept once, at p: counts over combinations, and their sum, so that a weight of (3.2) is a count
-over the sum. A pixel's partners are numbered 2 d for the one at offset d and 2 d + 1 for the one at the negative offset,
-of whose pair this pixel is the second; -1 is none. A joint covariance has the blocks of the two pixels' own components,
-so a joint density is a product of two.
+over the sum. A pixel's partners are numbered 2 d for the one at offset d, and 2 d + 1 for the one at the negative
+offset, of whose pair this pixel is the second; -1 is none. A joint covariance has the blocks of the two pixels' own
+components, so a joint density is a product of two.
 
 counts (H, W, K, D, S) are those of p's component, of all its pairs, and of the other pixel's component: as all counts
 together fit no cache, what one picture adds at a pixel lies together. S = MOST_SLOTS, so that sums are vector code.
