@@ -1,10 +1,10 @@
-"""A mixture of Gaussians at every pixel: densities, matching, and the update (Zhao 2009, 2.1 to 2.5).
+"""A mixture of Gaussians at every pixel: distances, densities, and the update (Zhao 2009, 2.1 to 2.5).
 
 Covariances are diagonal. A slot whose weight is 0 is empty. `kept` has a bit for every component that counts as
 background. Pixels are independent of each other and rows are shared out over threads, so that threads change nothing.
 
-Functions of one pixel take whole arrays and its place, and the small ones are inlined: to make views, and to call with
-whole arrays, costs more than what is done there.
+Of each row, numbers lie slot by slot, and channel by channel within a slot, so that what is done at all pixels alike is
+vector code along the row: weights (H, K, W), means and variances (H, K, C, W).
 """
 
 from __future__ import annotations
@@ -23,204 +23,293 @@ MOST_SLOTS = 8
 """Bits of `kept`."""
 LEAST = 1e-37
 """The least density whose logarithm is taken."""
-_TAIL_HEIGHT = np.float32(math.exp(-TAIL / 2.0))
+_TAIL = np.float32(TAIL)
 _PER_RANGE_SQUARED = np.float32(2.0 * math.pi / (256.0 * 256.0))
 _0, _1 = np.float32(0.0), np.float32(1.0)
+_E0, _E1, _E2, _E3, _E4, _E5, _E6 = (
+    np.float32(term)
+    for term in np.polynomial.Chebyshev.interpolate(np.exp, 6, [-1, 0]).convert(kind=np.polynomial.Polynomial).coef
+)
+"""exp from -1 to 0 as a polynomial, to 1e-7: there is no vector code for `math.exp`."""
 
 
 @vector_kernel
-def squared_distance(image, means, variances, y, x, k):
-    """Squared Mahalanobis distance of a pixel's colour to one component."""
-    if image.shape[2] == 3:  # written out, with one division
-        blue = np.float32(image[y, x, 0]) - means[y, x, k, 0]
-        green = np.float32(image[y, x, 1]) - means[y, x, k, 1]
-        red = np.float32(image[y, x, 2]) - means[y, x, k, 2]
-        a, b, c = variances[y, x, k, 0], variances[y, x, k, 1], variances[y, x, k, 2]
-        return (blue * blue * b * c + green * green * a * c + red * red * a * b) / (a * b * c)
-    distance = _0
-    for c in range(image.shape[2]):
-        off = np.float32(image[y, x, c]) - means[y, x, k, c]
-        distance += off * off / variances[y, x, k, c]
-    return distance
+def _fall(squared):
+    """exp(-d^2 / 2) of a squared distance, up to TAIL."""
+    u = min(squared, _TAIL) / -_TAIL
+    root = _E0 + u * (_E1 + u * (_E2 + u * (_E3 + u * (_E4 + u * (_E5 + u * _E6)))))
+    fall = root * (_TAIL / max(squared, _TAIL))
+    fall *= fall
+    fall *= fall
+    return fall * fall
 
 
 @vector_kernel
-def slot_density(image, means, variances, y, x, k):
-    """The density (2.2) of a pixel's colour in one component, over that of colours spread evenly over 0..255."""
-    spread = _1
-    for c in range(image.shape[2]):
-        spread *= variances[y, x, k, c] * _PER_RANGE_SQUARED
-    distance = squared_distance(image, means, variances, y, x, k)
-    height = _1 / np.float32(math.sqrt(spread))
-    if distance <= np.float32(TAIL):
-        return np.float32(math.exp(np.float32(-0.5) * distance)) * height
-    share = np.float32(TAIL) / distance
-    share *= share
-    share *= share
-    return share * share * _TAIL_HEIGHT * height
+def row_colours(image, y, out):
+    """One row of a picture (H, W, C), channel by channel: out (C, W) float32."""
+    for c in range(out.shape[0]):
+        for x in range(out.shape[1]):
+            out[c, x] = image[y, x, c]
 
 
 @vector_kernel
-def best_slot(image, weights, means, variances, y, x, limit):
-    """The component nearest to a pixel's colour by Mahalanobis distance (3.4); -1 where all are beyond `limit`."""
-    best, least = -1, limit
-    for k in range(weights.shape[2]):
-        if weights[y, x, k] > _0:
-            distance = squared_distance(image, means, variances, y, x, k)
-            if distance < least:
-                best, least = k, distance
-    return best
+def _add_squared(colours, means, variances, out):
+    for x in range(out.shape[0]):
+        off = colours[x] - means[x]
+        out[x] += off * off / variances[x]
 
 
 @vector_kernel
-def _rank(weights, variances, y, x, k):
-    """Squared weight over summed variances."""
-    total = variances[y, x, k, 0]
-    for c in range(1, variances.shape[3]):
-        total += variances[y, x, k, c]
-    return weights[y, x, k] * weights[y, x, k] / total
+def _slot_distances(colours, means, variances, out):
+    """Squared Mahalanobis distances of colours (C, W) to one component: means and variances (C, W), out (W,)."""
+    out[:] = _0
+    for c in range(colours.shape[0]):
+        _add_squared(colours[c], means[c], variances[c], out)
 
 
 @vector_kernel
-def background_slots(weights, variances, y, x, slot, portion, floor, ranks):
-    """Bits of the components that make up the background: the first by weight over deviation that hold `portion`.
+def _times_variances(variances, out):
+    for x in range(out.shape[0]):
+        out[x] *= variances[x] * _PER_RANGE_SQUARED
 
-    slot : the component to ask first: where it holds `portion` and all others together, as narrow as variances can
-        be, rank after it, no other is looked at
-    ranks : (K,) float32, written over
+
+@vector_kernel
+def _fallen(distances, bits, k, out):
+    for x in range(out.shape[0]):
+        counts = np.float32(bits[x] >> np.uint8(k) & 1)
+        out[x] = counts * _fall(distances[x]) / np.float32(math.sqrt(out[x]))
+
+
+@vector_kernel
+def _slot_densities(distances, variances, bits, k, out):
+    """Densities (2.2) in component k, over that of colours spread evenly over 0..255; 0 where it does not count.
+
+    distances (W,), variances (C, W), bits (W,) of `kept`, out (W,)
     """
-    heavy = weights[y, x, slot]
-    rest = _1 - heavy
-    if heavy >= portion and _rank(weights, variances, y, x, slot) > rest * rest / (variances.shape[3] * floor):
-        return 1 << slot
-    for k in range(weights.shape[2]):
-        ranks[k] = _rank(weights, variances, y, x, k) if weights[y, x, k] > _0 else _0
-    bits, held = 0, _0
-    while held < portion:
-        best = 0
-        for k in range(1, weights.shape[2]):
-            if ranks[k] > ranks[best]:
-                best = k
-        if ranks[best] == _0:
-            break
-        ranks[best] = _0
-        held += weights[y, x, best]
-        bits |= 1 << best
-    return bits
+    out[:] = _1
+    for c in range(variances.shape[0]):
+        _times_variances(variances[c], out)
+    _fallen(distances, bits, k, out)
+
+
+@vector_kernel
+def _keep_nearer(distances, weights, k, least, nearest):
+    for x in range(least.shape[0]):
+        nearer = weights[x] > _0 and distances[x] < least[x]
+        least[x] = distances[x] if nearer else least[x]
+        nearest[x] = k if nearer else nearest[x]
+
+
+@vector_kernel
+def _keep_density(row, weights, k, densities, first, second, shown, alone):
+    """What a row (W,) of densities in component k adds to what is kept of all: the arguments of `mixture_look`."""
+    for x in range(shown.shape[0]):
+        density = row[x]
+        shown[x] = k if density > first[x] else shown[x]
+        second[x] = max(second[x], min(density, first[x]))
+        first[x] = max(first[x], density)
+        alone[x] += weights[x] * density
+    for x in range(shown.shape[0]):
+        densities[x, k] = row[x]
+
+
+@parallel_kernel
+def _over_rows_nearest(image, weights, means, variances, limit, nearest):
+    height, slots, width = weights.shape
+    for row in numba.prange(height):
+        y = np.int64(row)
+        colours = np.empty((image.shape[2], width), np.float32)
+        distances, least = np.empty(width, np.float32), np.full(width, limit)
+        row_colours(image, y, colours)
+        nearest[y, :] = -1
+        for k in range(slots):
+            _slot_distances(colours, means[y, k], variances[y, k], distances)
+            _keep_nearer(distances, weights[y, k], np.int8(k), least, nearest[y])
+
+
+@parallel_kernel
+def _over_rows_look(image, weights, means, variances, kept, limit, nearest, densities, peaks, shown, alone):
+    height, slots, width = weights.shape
+    for row in numba.prange(height):
+        y = np.int64(row)
+        colours, density = np.empty((image.shape[2], width), np.float32), np.empty(width, np.float32)
+        distances, least = np.empty(width, np.float32), np.full(width, limit)
+        row_colours(image, y, colours)
+        nearest[y, :], shown[y, :] = -1, 0
+        densities[y, :], peaks[0, y, :], peaks[1, y, :], alone[y, :] = _0, _0, _0, _0
+        for k in range(slots):
+            _slot_distances(colours, means[y, k], variances[y, k], distances)
+            _keep_nearer(distances, weights[y, k], np.int8(k), least, nearest[y])
+            _slot_densities(distances, variances[y, k], kept[y], k, density)
+            _keep_density(
+                density, weights[y, k], np.int8(k), densities[y], peaks[0, y], peaks[1, y], shown[y], alone[y]
+            )
+
+
+@parallel_kernel
+def _over_rows_scores(image, weights, means, variances, kept, out):
+    height, slots, width = weights.shape
+    for row in numba.prange(height):
+        y = np.int64(row)
+        colours, density = np.empty((image.shape[2], width), np.float32), np.empty(width, np.float32)
+        distances, alone = np.empty(width, np.float32), np.zeros(width, np.float32)
+        row_colours(image, y, colours)
+        for k in range(slots):
+            _slot_distances(colours, means[y, k], variances[y, k], distances)
+            _slot_densities(distances, variances[y, k], kept[y], k, density)
+            for x in range(width):
+                alone[x] += weights[y, k, x] * density[x]
+        for x in range(width):
+            out[y, x] = -math.log(max(float(alone[x]), LEAST))
+
+
+@vector_kernel
+def _decay(weights, matched, rate):
+    for x in range(weights.shape[0]):
+        weights[x] *= _1 - rate if matched[x] >= 0 else _1
 
 
 @vector_kernel
 def follow(image, weights, means, variances, y, x, slot, rate, floor):
-    """(2.3), (2.4) and (2.5) for the component `slot` that matched; it moves at the rate over its weight."""
-    for k in range(weights.shape[2]):
-        weights[y, x, k] *= _1 - rate
-    weights[y, x, slot] += rate
-    share = min(_1, rate / weights[y, x, slot])
+    """(2.3), (2.4) and (2.5) for the component `slot` that matched, after `_decay`; it moves at the rate over its
+    weight."""
+    weights[y, slot, x] += rate
+    share = min(_1, rate / weights[y, slot, x])
     for c in range(image.shape[2]):
-        off = np.float32(image[y, x, c]) - means[y, x, slot, c]
-        means[y, x, slot, c] += share * off
+        off = np.float32(image[y, x, c]) - means[y, slot, c, x]
+        means[y, slot, c, x] += share * off
         off *= _1 - share
-        spread = variances[y, x, slot, c]
-        variances[y, x, slot, c] = max(spread + share * (off * off - spread), floor)
+        spread = variances[y, slot, c, x]
+        variances[y, slot, c, x] = max(spread + share * (off * off - spread), floor)
 
 
 @kernel
 def replace(image, weights, means, variances, y, x, rate, wide):
     """A new component in the slot of least weight; the weights then sum to 1. Returns the slot."""
     slot, rest = 0, _0
-    for k in range(weights.shape[2]):
-        if weights[y, x, k] < weights[y, x, slot]:
+    for k in range(weights.shape[1]):
+        if weights[y, k, x] < weights[y, slot, x]:
             slot = k
-    weights[y, x, slot] = _0
-    for k in range(weights.shape[2]):
-        rest += weights[y, x, k]
+    weights[y, slot, x] = _0
+    for k in range(weights.shape[1]):
+        rest += weights[y, k, x]
     first = rest == _0
-    for k in range(weights.shape[2]):
-        weights[y, x, k] *= _0 if first else (_1 - rate) / rest
-    weights[y, x, slot] = _1 if first else rate
+    for k in range(weights.shape[1]):
+        weights[y, k, x] *= _0 if first else (_1 - rate) / rest
+    weights[y, slot, x] = _1 if first else rate
     for c in range(image.shape[2]):
-        means[y, x, slot, c] = np.float32(image[y, x, c])
-        variances[y, x, slot, c] = wide
+        means[y, slot, c, x] = np.float32(image[y, x, c])
+        variances[y, slot, c, x] = wide
     return slot
 
 
-@parallel_kernel
-def _over_rows_densities(image, means, variances, kept, out):
-    for row in numba.prange(image.shape[0]):
-        y = np.int64(row)
-        for x in range(image.shape[1]):
-            for k in range(out.shape[2]):
-                out[y, x, k] = _0
-                if kept[y, x] >> k & 1:
-                    out[y, x, k] = slot_density(image, means, variances, y, x, k)
+@vector_kernel
+def _rank(weights, variances, out):
+    """Squared weight over summed variances (C, W), of one slot; -1 where it is empty."""
+    out[:] = _0
+    for c in range(variances.shape[0]):
+        out += variances[c]
+    for x in range(out.shape[0]):
+        out[x] = weights[x] * weights[x] / out[x] if weights[x] > _0 else -_1
+
+
+@vector_kernel
+def _add_before(weights, ranks, own, comes_first, held):
+    for x in range(held.shape[0]):
+        before = ranks[x] > own[x] or (comes_first and ranks[x] == own[x])
+        held[x] += weights[x] if before else _0
+
+
+@vector_kernel
+def _set_bit(ranks, held, portion, k, bits):
+    for x in range(bits.shape[0]):
+        bits[x] |= np.uint8(np.uint8(1) << np.uint8(k)) if ranks[x] >= _0 and held[x] < portion else np.uint8(0)
+
+
+@vector_kernel
+def background_slots(weights, variances, portion, ranks, held, bits):
+    """Bits of the components that make up the background: the first by weight over deviation that hold `portion`.
+
+    weights (K, W), variances (K, C, W); ranks (K, W) and held (W,), written over; bits (W,) uint8, filled
+    """
+    bits[:] = 0
+    for k in range(weights.shape[0]):
+        _rank(weights[k], variances[k], ranks[k])
+    for k in range(weights.shape[0]):
+        held[:] = _0
+        for other in range(weights.shape[0]):
+            if other != k:
+                _add_before(weights[other], ranks[other], ranks[k], other < k, held)
+        _set_bit(ranks[k], held, portion, k, bits)
 
 
 @parallel_kernel
-def _over_rows_scores(image, weights, means, variances, kept, out):
-    for row in numba.prange(image.shape[0]):
+def _over_rows_update(image, learnt, nearest, weights, means, variances, kept, numbers, matched, fresh, background):
+    rate, floor, wide, portion = numbers[0], numbers[1], numbers[2], numbers[3]
+    height, slots, width = weights.shape
+    for row in numba.prange(height):
         y = np.int64(row)
-        for x in range(image.shape[1]):
-            density = 0.0
-            for k in range(weights.shape[2]):
-                if kept[y, x] >> k & 1:
-                    density += weights[y, x, k] * slot_density(image, means, variances, y, x, k)
-            out[y, x] = -math.log(max(density, LEAST))
+        ranks, held = np.empty((slots, width), np.float32), np.empty(width, np.float32)
+        for x in range(width):
+            matched[y, x] = nearest[y, x] if learnt[y, x] else -1
+            background[y, x] = matched[y, x] >= 0 and (kept[y, x] >> matched[y, x] & 1) == 1
+        for k in range(slots):
+            _decay(weights[y, k], matched[y], rate)
+        for x in range(width):
+            fresh[y, x] = -1
+            if matched[y, x] >= 0:
+                follow(image, weights, means, variances, y, x, np.int64(matched[y, x]), rate, floor)
+            elif learnt[y, x]:
+                fresh[y, x] = replace(image, weights, means, variances, y, x, rate, wide)
+        background_slots(weights[y], variances[y], portion, ranks, held, kept[y])
 
 
-@parallel_kernel
-def _over_rows_update(image, learnt, weights, means, variances, kept, numbers, matched, fresh, background):
-    limit, rate, floor, wide, portion = numbers[0], numbers[1], numbers[2], numbers[3], numbers[4]
-    for row in numba.prange(image.shape[0]):
-        y = np.int64(row)
-        ranks = np.empty(weights.shape[2], np.float32)
-        for x in range(image.shape[1]):
-            slot, new = -1, -1
-            background[y, x] = False
-            if learnt[y, x]:
-                slot = best_slot(image, weights, means, variances, y, x, limit)
-                if slot >= 0:
-                    background[y, x] = (kept[y, x] >> slot & 1) == 1
-                    follow(image, weights, means, variances, y, x, slot, rate, floor)
-                else:
-                    new = replace(image, weights, means, variances, y, x, rate, wide)
-                kept[y, x] = background_slots(weights, variances, y, x, max(slot, new), portion, floor, ranks)
-            matched[y, x], fresh[y, x] = slot, new
-
-
-def mixture_densities(image, means, variances, kept, out):
-    """Densities of the background's components at every pixel, over that of colours spread evenly over 0..255.
+def mixture_nearest(image, weights, means, variances, limit, nearest):
+    """The component nearest to each pixel's colour by Mahalanobis distance (3.4).
 
     Parameters
     ----------
     image : (H, W, C) uint8
-    means, variances : (H, W, K, C) float32, grey values and their squares
-    kept : (H, W) uint8, bits of the components that count
-    out : (H, W, K) float32, filled; 0 where a component does not count
+    weights : (H, K, W) float32; 0 in an empty slot
+    means, variances : (H, K, C, W) float32, grey values and their squares
+    limit : squared Mahalanobis distance up to which a component matches
+    nearest : (H, W) int8, filled; -1 where all are beyond `limit`
     """
-    _over_rows_densities(image, means, variances, kept, out)
+    _over_rows_nearest(image, weights, means, variances, np.float32(limit), nearest)
+
+
+def mixture_look(image, weights, means, variances, kept, limit, nearest, densities, peaks, shown, alone):
+    """The same, and densities of the background's components over that of colours spread evenly over 0..255.
+
+    Parameters
+    ----------
+    kept : (H, W) uint8, bits of the components that count
+    densities : (H, W, S) float32, filled, S = MOST_SLOTS; 0 where a component does not count
+    peaks : (2, H, W) float32, filled: the largest density of a pixel, and the second
+    shown : (H, W) int8, filled: the component of the largest
+    alone : (H, W) float32, filled: the density (2.1) of the mixture
+    """
+    _over_rows_look(image, weights, means, variances, kept, np.float32(limit), nearest, densities, peaks, shown, alone)
 
 
 def mixture_scores(image, weights, means, variances, kept, out):
-    """-log of (2.1) over evenly spread colours, nats, into out (H, W) float32.
-
-    weights : (H, W, K) float32; 0 in an empty slot; the rest as for `mixture_densities`
-    """
+    """-log of (2.1) over evenly spread colours, nats, into out (H, W) float32; the rest as for `mixture_look`."""
     _over_rows_scores(image, weights, means, variances, kept, out)
 
 
 def mixture_update(
-    image, learnt, weights, means, variances, kept, *, limit, rate, floor, wide, portion, matched, fresh, background
+    image, learnt, nearest, weights, means, variances, kept, *, rate, floor, wide, portion, matched, fresh, background
 ):
-    """Learn one picture where `learnt` (H, W) bool says so; arrays as for `mixture_scores`, changed in place.
+    """Learn one picture where `learnt` (H, W) bool says so; arrays as `mixture_look` takes and fills them, changed in
+    place.
 
     Parameters
     ----------
-    limit : squared Mahalanobis distance up to which a component matches
     rate : alpha of (2.5)
     floor, wide : least variance, and that of a new component, squared grey values
     portion : share of the weight that the background's components hold
     matched, fresh : (H, W) int8, filled: the component that matched, the slot of a new one; -1 for none
     background : (H, W) bool, filled: what matched counted as background, before this picture
     """
-    numbers = np.array([limit, rate, floor, wide, portion], np.float32)
-    _over_rows_update(image, learnt, weights, means, variances, kept, numbers, matched, fresh, background)
+    numbers = np.array([rate, floor, wide, portion], np.float32)
+    _over_rows_update(image, learnt, nearest, weights, means, variances, kept, numbers, matched, fresh, background)

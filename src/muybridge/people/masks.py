@@ -63,7 +63,9 @@ class Masks:
         pictures = [relit(picture, usual) for picture in pictures]
         empty = lasting_picture(pictures)
         known = {field.name for field in fields(BACKGROUND_MODELS[config.model].config)}
-        settings: dict[str, Any] = {"threshold": config.threshold} if "threshold" in known else {}
+        # Light is taken out of pictures before they come here: a model that does so itself would do it twice.
+        wanted: dict[str, Any] = {"threshold": config.threshold, "light": False}
+        settings = {name: value for name, value in wanted.items() if name in known}
         # A plate is one picture of the empty scene, which there is now; other models learn from many.
         shown = [empty] if config.model == "plate" else list(pictures)
         return cls(build_background(config.model, shown, **settings), empty, config)

@@ -19,7 +19,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from muybridge._kernels.pairs import pooled_scores, slot_deviations
+from muybridge._kernels.deviations import pooled_scores, slot_deviations
 from muybridge.segmentation.pictures import learn_each
 from muybridge.segmentation.spatial import OFFSETS, SpatialBackground, SpatialConfig
 
@@ -55,15 +55,15 @@ class AutoBackground(SpatialBackground):
         kept: NDArray = self.mixtures.kept
         return (kept & (kept - 1)) == 0
 
-    def _score(self, picture: NDArray) -> NDArray:
+    def _judged(self, picture: NDArray) -> tuple[NDArray, NDArray]:
         mixtures, config = self.mixtures, self.config
-        deviations, out = np.empty(mixtures.weights.shape, np.float32), np.empty(picture.shape[:2], np.float32)
+        deviations, out = np.empty_like(mixtures.weights), np.empty(picture.shape[:2], np.float32)
         slot_deviations(
             picture, mixtures.weights, mixtures.means, mixtures.variances, mixtures.kept, config.deviation_floor**2,
             deviations,
         )  # fmt: skip
         pooled_scores(
-            deviations, mixtures.kept, self.counts, self.totals, self.only, OFFSETS, self.partners,
+            deviations, mixtures.kept, self.counts, self.totals, OFFSETS, self.partners,
             config.threshold**2, config.partner_limit, out,
         )  # fmt: skip
-        return out
+        return out, mixtures.nearest(picture)

@@ -80,7 +80,7 @@ class Gate:
         """(H, W) bool: components of which next to nothing has moved for `rest` pictures."""
         import cv2
 
-        if not self.rest:
+        if not self.rest or not (foreground & (self._still >= self.rest)).any():
             return np.zeros_like(foreground)
         count, label = cv2.connectedComponents(foreground.view(np.uint8), connectivity=8)
         pixels = np.bincount(label.ravel(), minlength=count)

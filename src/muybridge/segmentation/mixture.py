@@ -26,11 +26,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from muybridge._kernels.mixture import MOST_SLOTS, mixture_densities, mixture_scores, mixture_update
+from muybridge._kernels.mixture import MOST_SLOTS, mixture_look, mixture_nearest, mixture_scores, mixture_update
 from muybridge.errors import InputError
 from muybridge.segmentation.cleaning import check_squares, close_open
 from muybridge.segmentation.pictures import check_same_shape, learn_each
@@ -80,13 +81,28 @@ class MixtureConfig(ComponentsConfig):
     """Settings of the mixture model: those of the components."""
 
 
+class Look(NamedTuple):
+    """A picture as the mixtures see it; densities are those of the background, over that of evenly spread colours."""
+
+    nearest: NDArray
+    """(H, W) int8: the component that matches; -1 for none."""
+    densities: NDArray
+    """(H, W, MOST_SLOTS) float32, of each component."""
+    peaks: NDArray
+    """(2, H, W) float32: the largest of them, and the second."""
+    shown: NDArray
+    """(H, W) int8: the component of the largest."""
+    alone: NDArray
+    """(H, W) float32: (2.1), all by their weights."""
+
+
 class PixelMixtures:
     """The components of every pixel, and how they learn; shared by the models that are made of them.
 
     Attributes
     ----------
-    weights : (H, W, K) float32; 0 where there is no component
-    means, variances : (H, W, K, C) float32, grey values and their squares
+    weights : (H, K, W) float32; 0 where there is no component
+    means, variances : (H, K, C, W) float32, grey values and their squares
     kept : (H, W) uint8, a bit for each component that counts as background
     matched, fresh : (H, W) int8: which component the last picture matched, which slot it made anew; -1 for none
     seen : pictures learnt
@@ -94,19 +110,41 @@ class PixelMixtures:
 
     def __init__(self, shape: tuple[int, ...], config: ComponentsConfig) -> None:
         height, width, channels = shape
-        slots = (height, width, config.components)
+        slots = config.components
         self.config, self.seen = config, 0
-        self.weights = np.zeros(slots, np.float32)
-        self.means, self.variances = np.zeros((*slots, channels), np.float32), np.ones((*slots, channels), np.float32)
+        self.weights = np.zeros((height, slots, width), np.float32)
+        self.means = np.zeros((height, slots, channels, width), np.float32)
+        self.variances = np.ones_like(self.means)
         self.kept = np.zeros((height, width), np.uint8)
         self.matched, self.fresh = np.full((height, width), -1, np.int8), np.full((height, width), -1, np.int8)
         self._known = np.zeros((height, width), bool)
 
-    def densities(self, picture: NDArray) -> NDArray:
-        """(H, W, K) float32: the background components' densities over that of evenly spread colours."""
-        out = np.empty(self.weights.shape, np.float32)
-        mixture_densities(picture, self.means, self.variances, self.kept, out)
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """(H, W, C) of the pictures."""
+        height, _, channels, width = self.means.shape
+        return height, width, channels
+
+    def nearest(self, picture: NDArray) -> NDArray:
+        """(H, W) int8: the component that each pixel of a picture matches; -1 for none."""
+        out = np.empty(self.kept.shape, np.int8)
+        mixture_nearest(picture, self.weights, self.means, self.variances, self._limit, out)
         return out
+
+    def look(self, picture: NDArray) -> Look:
+        """What each pixel of a picture matches, and how well all components of the background explain it."""
+        size = self.kept.shape
+        out = Look(
+            np.empty(size, np.int8), np.zeros((*size, MOST_SLOTS), np.float32), np.empty((2, *size), np.float32),
+            np.empty(size, np.int8), np.empty(size, np.float32),
+        )  # fmt: skip
+        mixture_look(picture, self.weights, self.means, self.variances, self.kept, self._limit, *out)
+        return out
+
+    @property
+    def _limit(self) -> float:
+        """Squared Mahalanobis distance up to which a component matches."""
+        return self.config.match**2 * self.shape[2]
 
     def score(self, picture: NDArray) -> NDArray:
         """(H, W) float32, nats: -log of (2.1) over evenly spread colours."""
@@ -114,15 +152,17 @@ class PixelMixtures:
         mixture_scores(picture, self.weights, self.means, self.variances, self.kept, out)
         return out
 
-    def learn(self, picture: NDArray, learnt: NDArray) -> NDArray:
-        """Learn where `learnt` (H, W) bool; returns where the picture matched what was background before it."""
+    def learn(self, picture: NDArray, nearest: NDArray, learnt: NDArray) -> NDArray:
+        """Learn where `learnt` (H, W) bool; returns where the picture matched what was background before it.
+
+        nearest : (H, W) int8: what the picture matches, as the model is now
+        """
         config = self.config
         self.seen += 1
         mixture_update(
-            picture, learnt, self.weights, self.means, self.variances, self.kept,
-            limit=config.match**2 * picture.shape[2], rate=max(config.update_rate, 1.0 / self.seen),
-            floor=config.sd_floor**2, wide=config.first_sd**2, portion=config.portion,
-            matched=self.matched, fresh=self.fresh, background=self._known,
+            picture, learnt, nearest, self.weights, self.means, self.variances, self.kept,
+            rate=max(config.update_rate, 1.0 / self.seen), floor=config.sd_floor**2, wide=config.first_sd**2,
+            portion=config.portion, matched=self.matched, fresh=self.fresh, background=self._known,
         )  # fmt: skip
         return self._known
 
@@ -133,8 +173,12 @@ class PixelMixtures:
 
     def heaviest(self, at: tuple[slice, slice]) -> tuple[NDArray, NDArray]:
         """Mean and deviation of the heaviest component at some rows and columns, (R, Q, C) float32 grey values."""
-        heaviest = self.weights[at].argmax(axis=2)[..., None, None]
-        mean, variance = (np.take_along_axis(of[at], heaviest, axis=2)[:, :, 0] for of in (self.means, self.variances))
+        rows, columns = at
+        heaviest = self.weights[rows, :, columns].argmax(axis=1)[:, None, None]
+        mean, variance = (
+            np.take_along_axis(of[rows, :, :, columns], heaviest, axis=1)[:, 0].transpose(0, 2, 1)
+            for of in (self.means, self.variances)
+        )
         return mean, np.sqrt(variance)
 
 
@@ -158,7 +202,7 @@ class MixtureBackground:
 
     def learn(self, image: NDArray) -> None:
         """Learn a picture of the size and channels the model was made for."""
-        self.mixtures.learn(self._checked(image), self._everything)
+        self._learn(self._checked(image))
 
     def score(self, image: NDArray) -> NDArray:
         """(H, W) float32, nats: by how much evenly spread colours explain each pixel better; learns nothing."""
@@ -166,8 +210,10 @@ class MixtureBackground:
 
     def apply(self, image: NDArray) -> NDArray:
         """Foreground (H, W) bool; learns the picture."""
-        known = self.mixtures.learn(self._checked(image), self._everything)
-        return close_open(~known, self.config.closing, self.config.opening)
+        return close_open(~self._learn(self._checked(image)), self.config.closing, self.config.opening)
+
+    def _learn(self, picture: NDArray) -> NDArray:
+        return self.mixtures.learn(picture, self.mixtures.nearest(picture), self._everything)
 
     def _checked(self, image: NDArray) -> NDArray:
-        return check_same_shape(image, self.mixtures.means.shape[:2] + self.mixtures.means.shape[3:])
+        return check_same_shape(image, self.mixtures.shape)

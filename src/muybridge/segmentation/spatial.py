@@ -31,7 +31,8 @@ Differences from the paper:
 - P(c0, ci) = P(c0 | ci) P(ci) blames a pixel for a partner in front of which somebody stands, which widens people by
   the distance of the partners. -log P(ci) counts up to `partner_limit`; infinity is (3.1) as printed.
 
-Cost: O(K^2 M) a pixel to test, O(pairs) to learn; mutual information is measured for some rows at each picture.
+Cost: O(M) a pixel to test where it and its partners each show one component clearly, O(K^2 M) at most; O(pairs) to
+learn; mutual information is measured for some rows at each picture.
 """
 
 from __future__ import annotations
@@ -42,7 +43,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from muybridge._kernels.pairs import NONE, choose_partners, pair_scores, pair_update
+from muybridge._kernels.mixture import MOST_SLOTS
+from muybridge._kernels.pairs import choose_partners, pair_scores, pair_update
 from muybridge.errors import InputError
 from muybridge.segmentation.cleaning import beside, close_open
 from muybridge.segmentation.gate import Gate, check_patience
@@ -99,8 +101,8 @@ class SpatialBackground:
     Attributes
     ----------
     mixtures : PixelMixtures
-    counts : (D, H, W, K, K) float32, and their sums totals (D, H, W): pair d of a pixel is the one at OFFSETS[d]
-    only : (D, H, W) int8: the one combination of a pair that was seen, if it is one
+    counts : (H, W, K, D, MOST_SLOTS) float32, own component, pair, the other's; and their sums totals (D, H, W): pair
+        d of a pixel is the one at OFFSETS[d]
     partners : (H, W, M) int8: 2 d for the neighbour at OFFSETS[d], 2 d + 1 for the one opposite, -1 for none
     """
 
@@ -109,17 +111,14 @@ class SpatialBackground:
         height, width = shape[:2]
         self.mixtures = PixelMixtures(shape, self.config)
         slots = self.config.components
-        self.counts = np.zeros((len(OFFSETS), height, width, slots, slots), np.float32)
+        self.counts = np.zeros((height, width, slots, len(OFFSETS), MOST_SLOTS), np.float32)
         self.totals = np.zeros((len(OFFSETS), height, width), np.float32)
-        self.only = np.full(self.totals.shape, NONE, np.int8)
         self.partners = np.full((height, width, self.config.partners), -1, np.int8)
-        self._information = np.zeros((len(OFFSETS), height, width), np.float32)
-        self._gate, self._everything = (
-            Gate((height, width), self.config.patience, self.config.rest),
-            np.ones((height, width), bool),
-        )
+        self._information = np.zeros_like(self.totals)
+        self._gate = Gate((height, width), self.config.patience, self.config.rest)
+        self._everything = np.ones((height, width), bool)
         self._light = Light(shape, self.config.match)
-        choose_partners(self.counts, self.only, OFFSETS, 0, 1, self._information, self.partners)
+        choose_partners(self.counts, OFFSETS, 0, 1, self._information, self.partners)
 
     @classmethod
     def train(cls, pictures: Iterable[NDArray], config: SpatialConfig | None = None) -> SpatialBackground:
@@ -133,36 +132,38 @@ class SpatialBackground:
 
     def learn(self, image: NDArray) -> None:
         """Learn all of a picture."""
-        self._learn(self._followed(self._checked(image)), self._everything)
+        picture = self._followed(self._checked(image))
+        self._learn(picture, self.mixtures.nearest(picture), self._everything)
 
     def score(self, image: NDArray) -> NDArray:
         """(H, W) float32, nats: -log of (3.1) over evenly spread colours; learns nothing."""
         picture = self._checked(image)
-        return self._score(self._light.taken_out(picture, self._field(picture)))
+        return self._judged(self._light.taken_out(picture, self._field(picture)))[0]
 
     def apply(self, image: NDArray) -> NDArray:
         """Foreground (H, W) bool; learns the background of the picture."""
         picture = self._followed(self._checked(image))
-        mask = close_open(self._score(picture) > self.config.threshold, self.config.closing, self.config.opening)
-        self._learn(picture, self._gate.learnt(mask, picture) & ~beside(mask, FRINGE))
+        score, nearest = self._judged(picture)
+        mask = close_open(score > self.config.threshold, self.config.closing, self.config.opening)
+        self._learn(picture, nearest, self._gate.learnt(mask, picture) & ~beside(mask, FRINGE))
         return mask
 
-    def _score(self, picture: NDArray) -> NDArray:
+    def _judged(self, picture: NDArray) -> tuple[NDArray, NDArray]:
+        """(H, W) float32, the score; (H, W) int8, the component that each pixel matches."""
         out = np.empty(picture.shape[:2], np.float32)
+        look = self.mixtures.look(picture)
         pair_scores(
-            self.mixtures.weights, self.mixtures.densities(picture), self.counts, self.totals, self.only, OFFSETS,
-            self.partners, self.config.partner_limit, out,
+            look.alone, look.densities, look.peaks, look.shown, self.counts, self.totals, OFFSETS, self.partners,
+            self.config.partner_limit, out,
         )  # fmt: skip
-        return out
+        return out, look.nearest
 
-    def _learn(self, picture: NDArray, learnt: NDArray) -> None:
+    def _learn(self, picture: NDArray, nearest: NDArray, learnt: NDArray) -> None:
         mixtures = self.mixtures
-        mixtures.learn(picture, learnt)
-        pair_update(
-            self.counts, self.totals, self.only, OFFSETS, mixtures.matched, mixtures.fresh, self.config.pair_rate
-        )
+        mixtures.learn(picture, nearest, learnt)
+        pair_update(self.counts, self.totals, OFFSETS, mixtures.matched, mixtures.fresh, self.config.pair_rate)
         first = mixtures.seen % RESELECT
-        choose_partners(self.counts, self.only, OFFSETS, first, RESELECT, self._information, self.partners)
+        choose_partners(self.counts, OFFSETS, first, RESELECT, self._information, self.partners)
 
     def _followed(self, picture: NDArray) -> NDArray:
         """The picture as it would look in the light of the background; the next one's is looked for from there."""
@@ -176,5 +177,4 @@ class SpatialBackground:
         return self._light.measure(picture, *self.mixtures.heaviest(self._light.lattice))
 
     def _checked(self, image: NDArray) -> NDArray:
-        shape = (*self.mixtures.kept.shape, self.mixtures.means.shape[3])
-        return np.ascontiguousarray(check_same_shape(image, shape))
+        return np.ascontiguousarray(check_same_shape(image, self.mixtures.shape))
