@@ -49,7 +49,7 @@ class ForegroundConfig:
 class Evidence:
     """One frame's foreground, as far as those who stand nearer do not explain it already.
 
-    mask : (H, W) bool; weights : (H, W) float32, how far each pixel counts
+    mask : (H, W) bool; weights : (H, W) float32, how far each pixel counts; shown : (H, W) bool, where that is at all
     """
 
     def __init__(
@@ -63,21 +63,18 @@ class Evidence:
             if hidden.shape != mask.shape:
                 raise InputError("occluders", expected=f"the masks' {mask.shape}", got=str(hidden.shape))
             self.weights[hidden] = 0
-
-    @property
-    def shown(self) -> Mask:
-        """(H, W) bool: what nobody nearer and no occluder covers."""
-        shown: Mask = self.weights > 0
-        return shown
+        self.shown = self.weights > 0
 
     def explain(self, state: FloatArray, share: float | None = None) -> None:
         """What the middle of this box (>= 4,) covers says nothing about those behind it."""
-        self.weights[middle(state, self.config.core if share is None else share)] = 0
+        place = middle(state, self.config.core if share is None else share)
+        self.weights[place] = 0
+        self.shown[place] = False
 
     def seen(self, state: FloatArray) -> tuple[float, float]:
         """Of a box (>= 4,): the share of it that can be seen, and the share of that which is foreground."""
         place = middle(state, 1.0)
-        visible = self.weights[place] > 0
+        visible = self.shown[place]
         count = int(np.count_nonzero(visible))
         full = int(np.count_nonzero(visible & self.mask[place]))
         return count / max(1.0, float(state[2] * state[3])), full / max(1, count)

@@ -80,15 +80,18 @@ class Person:
     parts: Parts | None = None
 
     def measure(self, outline: FloatArray, ground: GroundScale, rate: float) -> None:
-        """Learn how tall and how broad they are from the box (4,) of their foreground; only while they are clear."""
+        """Learn how tall they are from their box, and how broad from the box (4,) of their foreground, where they agree.
+
+        Only while they are clear to see. Height is learnt whether or not they agree: a child's box, too large at first,
+        has to come down.
+        """
         body = self.body.box
-        wider, taller = np.abs(np.log(outline[WIDTH : HEIGHT + 1] / body[WIDTH : HEIGHT + 1]))
-        if taller > AGREE_TALL or wider > AGREE_WIDE:  # of somebody else too, or not of all of them
-            return
         tall = float(body[HEIGHT] / ground.height(feet(body)))
-        broad = float(outline[WIDTH] / outline[HEIGHT] / ground.aspect)
         self.stature = float(np.clip(self.stature + rate * (tall - self.stature), SHORTEST, TALLEST))
-        self.breadth = float(np.clip(self.breadth + rate * (broad - self.breadth), NARROWEST, BROADEST))
+        wider, taller = np.abs(np.log(outline[WIDTH : HEIGHT + 1] / body[WIDTH : HEIGHT + 1]))
+        if taller < AGREE_TALL and wider < AGREE_WIDE:  # else it is of somebody else too, or not of all of them
+            broad = float(outline[WIDTH] / outline[HEIGHT] / ground.aspect)
+            self.breadth = float(np.clip(self.breadth + rate * (broad - self.breadth), NARROWEST, BROADEST))
 
     @property
     def missing(self) -> int:

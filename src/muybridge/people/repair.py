@@ -66,7 +66,7 @@ def section(index: int, torso: FloatArray, body: FloatArray, cut: PartConfig) ->
 def in_section(place: FloatArray, before: FloatArray, frame: Frame, cut: PartConfig) -> FloatArray:
     """(4,) the inner box (5.1) to (5.4) of the foreground in a section (4,)."""
     rows, columns = middle(place, 1.0)
-    mask = frame.evidence.mask[rows, columns] & (frame.evidence.weights[rows, columns] > 0)
+    mask = frame.evidence.mask[rows, columns] & frame.evidence.shown[rows, columns]
     box = inner_box(mask, 0, len(mask), cut.shrink) if mask.any() and mask.mean() > FEWEST else None
     if box is None:
         return np.concatenate([place[:2], before[2:SPEED_X]])

@@ -26,6 +26,7 @@ from muybridge.people.detect import Places, find_standing
 from muybridge.people.evidence import Evidence, ForegroundConfig
 from muybridge.people.failure import FailureDetector
 from muybridge.people.filtered import Filtered, Frame
+from muybridge.people.ground import GroundScale
 from muybridge.people.histograms import to_luma_chroma
 from muybridge.people.identity import Identities, IdentityConfig
 from muybridge.people.part_filters import PartRules, Parts
@@ -218,13 +219,18 @@ class PeopleTracker:
         alone = self._shared(people).max(axis=1, initial=0.0) < APART
         clear = {person for person, is_alone in zip(people, alone) if is_alone and self._is_whole(person)}
         self._identities.step(frame.picture, frame.number, people, clear, self.gone)
-        for person in clear:
-            outline = frame.evidence.outline(person.body.box)
-            if self.scene.ground is not None and outline is not None:
-                person.measure(outline, self.scene.ground, 1 / (1 + MEASURED_S * self._rate))
+        if self.scene.ground is not None:
+            self._measure(clear, frame.evidence, self.scene.ground)
         for person in people:
             if person in clear and person.parts is None:
                 person.parts = Parts.start(person.rng, person.body.box, frame, self._rules)
+
+    def _measure(self, clear: set[Person], evidence: Evidence, ground: GroundScale) -> None:
+        """How tall and how broad those who are clear to see are."""
+        for person in clear:
+            outline = evidence.outline(person.body.box)
+            if outline is not None:
+                person.measure(outline, ground, 1 / (1 + MEASURED_S * self._rate))
 
     def _is_whole(self, person: Person) -> bool:
         full = person.filled > FULL * self.scene.silhouette.mean
