@@ -80,7 +80,7 @@ class Person:
     parts: Parts | None = None
 
     def measure(self, outline: FloatArray, ground: GroundScale, rate: float) -> None:
-        """Learn how tall they are from their box, and how broad from the box (4,) of their foreground, where they agree.
+        """Learn how tall they are from their box, and how broad from that of their foreground (4,), where they agree.
 
         Only while they are clear to see. Height is learnt whether or not they agree: a child's box, too large at first,
         has to come down.
