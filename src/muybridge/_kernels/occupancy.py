@@ -12,21 +12,19 @@ SIDES = 2  # of a pixel: foreground, background
 
 
 @exact_kernel
-def fill_sums(mask, weights, table):
+def fill_sums(share, weights, table):
     """Fill table (H + 1, W + 1, 2) float64: summed weights of foreground and of background above row y, left of x.
 
-    mask : (H, W) bool; weights : (H, W) float32, how far each pixel counts.
+    share : (H, W) float32 or bool, how far each pixel is foreground; weights : (H, W) float32, how far it counts.
     """
-    height, width = mask.shape
+    height, width = share.shape
     table[0] = 0.0
     for y in range(height):
         table[y + 1, 0] = 0.0
         full = empty = 0.0
         for x in range(width):
-            if mask[y, x]:
-                full += np.float64(weights[y, x])
-            else:
-                empty += np.float64(weights[y, x])
+            full += np.float64(weights[y, x]) * np.float64(share[y, x])
+            empty += np.float64(weights[y, x]) * (1.0 - np.float64(share[y, x]))
             table[y + 1, x + 1, 0] = table[y, x + 1, 0] + full
             table[y + 1, x + 1, 1] = table[y, x + 1, 1] + empty
 

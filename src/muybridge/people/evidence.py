@@ -11,6 +11,7 @@ Not in Zhao (2009), where the foreground starts and restarts people, and between
 from __future__ import annotations
 
 from collections.abc import Sequence
+from copy import copy
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -20,6 +21,7 @@ from muybridge._kernels.occupancy import fill_sums, silhouette_scores
 from muybridge.errors import InputError
 from muybridge.filters.particles import FloatArray
 from muybridge.filters.state import Likelihood
+from muybridge.people.appearance import Appearance, claims
 from muybridge.people.blobs import Mask
 from muybridge.people.colour_likelihood import pixel_boxes
 from muybridge.people.histograms import Hull, inside
@@ -46,10 +48,19 @@ class ForegroundConfig:
                              got=f"{self.outside}, {self.looks}, {self.core}, {self.shared}")  # fmt: skip
 
 
+@dataclass(frozen=True, eq=False)
+class Claim:
+    """Where somebody is, or is expected (>= 4,), and what they look like, where that is known."""
+
+    box: FloatArray
+    appearance: Appearance | None = None
+
+
 class Evidence:
     """One frame's foreground, as far as those who stand nearer do not explain it already.
 
-    mask : (H, W) bool; weights : (H, W) float32, how far each pixel counts; shown : (H, W) bool, where that is at all
+    mask : (H, W) bool; share : (H, W) float32, how far it is foreground that may be the person's; weights : (H, W)
+    float32, how far each pixel counts; shown : (H, W) bool, where that is at least half
     """
 
     def __init__(
@@ -58,12 +69,44 @@ class Evidence:
         self.config = config or ForegroundConfig()
         self.mask, self.silhouette = np.ascontiguousarray(mask), silhouette
         self.gain, self.cost = silhouette.ratios(self.config.outside)
+        self.share = self.mask.astype(np.float32)
         self.weights = np.ones(mask.shape, np.float32)
         if hidden is not None:
             if hidden.shape != mask.shape:
                 raise InputError("occluders", expected=f"the masks' {mask.shape}", got=str(hidden.shape))
             self.weights[hidden] = 0
+        self._open = self.weights.copy()
         self.shown = self.weights > 0
+
+    def of(
+        self, person: Claim, nearer: Sequence[Claim], further: Sequence[Claim], codes: NDArray[np.int16]
+    ) -> Evidence:
+        """As it is for one person, among others whose boxes are nearer and further away.
+
+        What looks like a nearer one counts as hidden, and what looks like one further away as seen past the person.
+        codes : (H, W), see `colour_codes`
+        """
+        view = copy(self)
+        view.weights, view.share = self._open.copy(), self.share
+        for other in nearer:
+            core, place = middle(other.box, self.config.core), middle(other.box, 1.0)
+            if person.appearance is None or other.appearance is None:
+                view.weights[core] = 0
+            elif not _is_empty(place, self.mask.shape):
+                whose = claims(codes, place, (other.box, other.appearance), (person.box, person.appearance), self.silhouette)
+                view.weights[core] *= self.mask[core]
+                view.weights[place] *= np.where(self.mask[place], 1 - whose, 1)
+        for other in further:
+            core, place = middle(other.box, self.config.core), middle(other.box, 1.0)
+            if person.appearance is None or other.appearance is None:
+                view.weights[core] *= np.float32(self.config.shared)
+            elif not _is_empty(place, self.mask.shape):
+                whose = claims(codes, place, (person.box, person.appearance), (other.box, other.appearance), self.silhouette)
+                if view.share is self.share:
+                    view.share = self.share.copy()
+                view.share[place] *= whose
+        view.shown = view.weights > 0.5
+        return view
 
     def explain(self, state: FloatArray, share: float | None = None) -> None:
         """What the middle of this box (>= 4,) covers says nothing about those behind it."""
@@ -76,7 +119,7 @@ class Evidence:
         place = middle(state, 1.0)
         visible = self.shown[place]
         count = int(np.count_nonzero(visible))
-        full = int(np.count_nonzero(visible & self.mask[place]))
+        full = int(np.count_nonzero(visible & (self.share[place] > 0.5)))
         return count / max(1.0, float(state[2] * state[3])), full / max(1, count)
 
     def outline(self, state: FloatArray) -> FloatArray | None:
@@ -99,10 +142,9 @@ class Evidence:
             return None
         return np.concatenate([(low + high) / 2, high - low + 1.0])
 
-    def observe(self, area: float, behind: Sequence[FloatArray] = ()) -> ForegroundLikelihood:
-        """For a person whose box is expected to have so many pixels; others (>= 4,) are expected further away."""
-        places = tuple(middle(state, self.config.core) for state in behind)
-        return ForegroundLikelihood(self, self.config.looks / area, places)
+    def observe(self, area: float) -> ForegroundLikelihood:
+        """For a person whose box is expected to have so many pixels."""
+        return ForegroundLikelihood(self, self.config.looks / area)
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,7 +153,6 @@ class ForegroundLikelihood:
 
     evidence: Evidence
     scale: float
-    behind: tuple[Place, ...]
     _sums: list[tuple[NDArray[np.float64], Hull]] = field(default_factory=list, init=False, repr=False)
 
     def log_prob(self, states: FloatArray) -> FloatArray:
@@ -127,11 +168,8 @@ class ForegroundLikelihood:
         if not (self._sums and _holds(self._sums[0][1], hull)):
             left, top, right, bottom = hull
             part = slice(top, bottom), slice(left, right)
-            weights = self.evidence.weights[part].copy()
-            for rows, columns in self.behind:
-                weights[_moved(rows, top), _moved(columns, left)] *= np.float32(self.evidence.config.shared)
             table = np.empty((bottom - top + 1, right - left + 1, 2))
-            fill_sums(np.ascontiguousarray(self.evidence.mask[part]), weights, table)
+            fill_sums(self.evidence.share[part], self.evidence.weights[part], table)
             self._sums[:] = [(table, hull)]
         return self._sums[0]
 
@@ -154,8 +192,9 @@ def middle(state: FloatArray, share: float) -> Place:
     return slice(max(0, top), max(0, bottom)), slice(max(0, left), max(0, right))
 
 
-def _moved(span: slice, by: int) -> slice:
-    return slice(max(0, span.start - by), max(0, span.stop - by))
+def _is_empty(place: Place, shape: tuple[int, ...]) -> bool:
+    rows, columns = place
+    return rows.start >= min(rows.stop, shape[0]) or columns.start >= min(columns.stop, shape[1])
 
 
 def _holds(outer: Hull, inner: Hull) -> bool:

@@ -23,6 +23,7 @@ from muybridge.people.colour_likelihood import ColourConfig, ColourTarget, Pictu
 from muybridge.people.histograms import count_histograms
 
 if TYPE_CHECKING:
+    from muybridge.people.filtered import Frame
     from muybridge.people.person import Person
 
 BANDS = np.array([[0.0, -0.38, 0.35, 0.2], [0.0, -0.16, 0.5, 0.3], [0.0, 0.18, 0.5, 0.35]])
@@ -101,8 +102,9 @@ class Identities:
         self._meetings: dict[frozenset[Person], Meeting] = {}
         self._likeness: dict[tuple[Person, int], list[float]] = {}
 
-    def step(self, picture: Picture, number: int, people: list[Person], clear: set[Person], gone: list[Person]) -> None:
+    def step(self, frame: Frame, people: list[Person], clear: set[Person], gone: list[Person]) -> None:
         """One frame, after everybody was followed. Exchanges and takes up identities; remembers looks of the clear."""
+        picture, number = frame.picture, frame.number
         known = {*people, *(lost for lost in gone if number - lost.sightings[-1].frame <= self._memory)}
         self._meetings = {pair: meeting for pair, meeting in self._meetings.items() if pair <= known}
         for a, b in combinations([person for person in people if person.is_known], 2):
@@ -115,7 +117,7 @@ class Identities:
         uncertain = {person for pair in self._meetings for person in pair}
         for person in people:
             if person in clear and person not in uncertain:
-                person.remember(picture, number)
+                person.remember(picture, frame.codes, frame.evidence.mask)
                 self._recall(picture, number, person, gone)
 
     def forget(self, known: set[Person]) -> None:
@@ -186,6 +188,7 @@ def exchange(a: Person, b: Person, frame: int) -> None:
     """Give each what the other was up to a frame: identity, look and sightings. Where they are now stays."""
     a.identity, b.identity = b.identity, a.identity
     a.look, b.look = b.look, a.look
+    a.appearance, b.appearance = b.appearance, a.appearance
     a.stature, b.stature = b.stature, a.stature
     a.breadth, b.breadth = b.breadth, a.breadth
     a.last_clear, b.last_clear = b.last_clear, a.last_clear

@@ -8,9 +8,12 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 import numpy as np
+from numpy.typing import NDArray
 
 from muybridge.filters.particles import FloatArray
 from muybridge.filters.state import Likelihood
+from muybridge.people.appearance import Appearance
+from muybridge.people.blobs import Mask
 from muybridge.people.box import HEIGHT, WIDTH, BoxMotion, CountConfig, X, Y
 from muybridge.people.colour_likelihood import ColourConfig, Picture
 from muybridge.people.evidence import Together
@@ -73,6 +76,7 @@ class Person:
     filled: float = 1.0
     sightings: list[Sighting] = field(default_factory=list)
     look: Look | None = None
+    appearance: Appearance | None = None
     looks: int = 0
     stature: float = 1.0
     breadth: float = 1.0
@@ -103,9 +107,13 @@ class Person:
         """Whether their look was learnt from enough frames to tell them from others."""
         return self.confirmed and self.looks >= ENOUGH_LOOKS
 
-    def remember(self, picture: Picture, number: int) -> None:
+    def remember(self, picture: Picture, codes: NDArray[np.int16], mask: Mask) -> None:
         """Learn what they look like; only while they are clear to see."""
         box = self.body.box
+        if self.appearance is None:
+            self.appearance = Appearance.learn(codes, mask, box)
+        else:
+            self.appearance = self.appearance.updated(codes, mask, box)
         self.look = Look.learn(picture, box, self.colour) if self.look is None else self.look.updated(picture, box)
         self.looks += 1
         self.last_clear = self.sightings[-1]
@@ -121,13 +129,12 @@ def follow(
     motion: BoxMotion,
     counts: CountConfig,
     ground: GroundScale | None,
-    behind: list[FloatArray],
 ) -> None:
-    """One frame of the body's filter; `behind` are boxes (>= 4,) of others who are expected further away."""
+    """One frame of the body's filter, of what is evidence for this person."""
     body, evidence = person.body, frame.evidence
     ground = None if ground is None else ground.of_person(person.stature, person.breadth)
     colour = body.target.observe(frame.picture, frame.background, evidence.shown)
-    cues: list[Likelihood] = [evidence.observe(usual_area(body.box, ground), behind)]
+    cues: list[Likelihood] = [evidence.observe(usual_area(body.box, ground))]
     if ground is not None:
         cues.append(ground)
     if evidence.seen(body.expected)[0] >= TRUST_COLOUR:

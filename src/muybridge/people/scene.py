@@ -14,7 +14,8 @@ from numpy.typing import NDArray
 
 from muybridge.errors import InputError
 from muybridge.people.blobs import BlobConfig, Mask, find_people
-from muybridge.people.ground import GroundScale, fit_ground
+from muybridge.people.ground import GroundScale
+from muybridge.people.ground_fit import fit_ground
 from muybridge.people.occluders import find_occluders
 from muybridge.people.silhouette import Silhouette, learn_silhouette
 
@@ -42,7 +43,7 @@ class Scene:
 def describe(
     background: NDArray[np.uint8], masks: Sequence[Mask], blobs: BlobConfig | None = None, drawn: Mask | None = None
 ) -> Scene:
-    """What masks (H, W) bool of many moments tell.
+    """What masks (H, W) bool of many moments, in the order of time, tell.
 
     blobs : BlobConfig
         What may be a person at all; the smaller ones are needed too, so that the ground is known far away.
@@ -52,11 +53,11 @@ def describe(
     if drawn is not None and drawn.shape != background.shape[:2]:
         raise InputError("occluders", expected=f"the pictures' {background.shape[:2]}", got=str(drawn.shape))
     size = background.shape[1], background.shape[0]
-    people = [blob for mask in masks for blob in find_people(mask, blobs or BlobConfig(smallest=250))]
-    ground = fit_ground(people, size)
+    moments = [find_people(mask, blobs or BlobConfig(smallest=250)) for mask in masks]
+    ground = fit_ground(moments, size)
     if ground is None:
         return Scene(background, occluders=drawn)
     occluders = find_occluders(masks, ground)
     if drawn is not None:
         occluders |= drawn
-    return Scene(background, ground, learn_silhouette(people, ground, size), occluders)
+    return Scene(background, ground, learn_silhouette([blob for people in moments for blob in people], ground, size), occluders)

@@ -11,7 +11,7 @@ Cost: of one person and frame, N particles for the body and N for each part, ada
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -23,7 +23,7 @@ from muybridge.people.box import PRINTED_VARIANCES, BoxMotion, CountConfig, boxe
 from muybridge.people.colour_likelihood import ColourConfig, Picture
 from muybridge.people.contrast_likelihood import ContrastConfig
 from muybridge.people.detect import Places, find_standing
-from muybridge.people.evidence import Evidence, ForegroundConfig
+from muybridge.people.evidence import Claim, Evidence, ForegroundConfig
 from muybridge.people.failure import FailureDetector
 from muybridge.people.filtered import Filtered, Frame
 from muybridge.people.ground import GroundScale
@@ -39,6 +39,7 @@ HIDDEN = 0.3  # share of a box that can be seen; less is called hidden, not lost
 EMPTY, FULL = 0.4, 0.6  # of what a person fills: less, and nobody is there; more, and all of them is
 MEASURED_S = 1.0  # seconds in which somebody's height is learnt
 WALK = 0.6  # heights a second: standard deviation of speeds that are tried for somebody new; a brisk walk is 1
+NEIGHBOURS = 0.3  # of a person's height: whose box is further away has no part in what is seen of them
 SAME, APART = 0.6, 0.05  # intersection over union of boxes that may be one person; of people clear of each other
 
 
@@ -120,8 +121,12 @@ class PeopleTracker:
         evidence = Evidence(mask, self.scene.silhouette, self.config.foreground, hidden)
         frame = Frame(number, to_luma_chroma(picture), self._background, evidence)
         order = sorted(self.people, key=nearness)
+        nearer: list[Claim] = []
         for rank, person in enumerate(order):
-            self._follow(person, frame, [other.body.expected for other in order[rank + 1 :]])
+            further = [Claim(other.body.expected, other.appearance) for other in order[rank + 1 :]]
+            self._follow(person, frame, nearer, further)
+            if not person.unseen:
+                nearer.append(Claim(person.body.box, person.appearance))
         self._give_up(frame)
         self._tell_apart(frame)
         self._welcome(frame)
@@ -162,9 +167,12 @@ class PeopleTracker:
     def _frames(self, seconds: float) -> int:
         return max(1, round(seconds * self._rate))
 
-    def _follow(self, person: Person, frame: Frame, behind: list[FloatArray]) -> None:
+    def _follow(self, person: Person, frame: Frame, nearer: list[Claim], further: list[Claim]) -> None:
         """The body, what can be seen of it, the parts; and what the body explains."""
-        follow(person, frame, self._motion, self.config.counts, self.scene.ground, behind)
+        all_of_it = frame.evidence
+        mine = Claim(person.body.expected, person.appearance)
+        frame = replace(frame, evidence=all_of_it.of(mine, _touching(mine, nearer), _touching(mine, further), frame.codes))
+        follow(person, frame, self._motion, self.config.counts, self.scene.ground)
         if person.visible < HIDDEN:
             person.hidden += 1
         elif person.filled < EMPTY * self.scene.silhouette.mean:
@@ -180,7 +188,7 @@ class PeopleTracker:
         score = min(1.0, person.visible) * person.filled
         person.sightings.append(Sighting(frame.number, box, score, not person.missing, parts))
         if not person.unseen:
-            frame.evidence.explain(box)
+            all_of_it.explain(box)
 
     def _give_up(self, frame: Frame) -> None:
         """Those unseen for too long, those too far away, and one of two who are one."""
@@ -218,7 +226,7 @@ class PeopleTracker:
         people = [person for person in self.people if person.confirmed]
         alone = self._shared(people).max(axis=1, initial=0.0) < APART
         clear = {person for person, is_alone in zip(people, alone) if is_alone and self._is_whole(person)}
-        self._identities.step(frame.picture, frame.number, people, clear, self.gone)
+        self._identities.step(frame, people, clear, self.gone)
         if self.scene.ground is not None:
             self._measure(clear, frame.evidence, self.scene.ground)
         for person in people:
@@ -261,3 +269,9 @@ class PeopleTracker:
         """(P, P) intersection over union of everybody's box with everybody else's."""
         boxes = boxes_from_states(np.array([person.body.box for person in people]).reshape(-1, 6))
         return overlaps(boxes, boxes) - np.eye(len(boxes))
+
+
+def _touching(person: Claim, others: list[Claim]) -> list[Claim]:
+    """Those whose boxes may meet the person's, wherever in its reach it is."""
+    reach = 0.5 * person.box[2:4] + NEIGHBOURS * person.box[3]
+    return [other for other in others if (np.abs(other.box[:2] - person.box[:2]) < reach + 0.5 * other.box[2:4]).all()]
