@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from muybridge.errors import InputError
 from muybridge.people.blobs import Mask
+from muybridge.people.things import Things
 from muybridge.segmentation import BACKGROUND_MODELS, BackgroundModel, build_background, median_picture
 from muybridge.segmentation.lasting import lasting_picture
 from muybridge.segmentation.light import relit
@@ -35,12 +36,13 @@ class MaskConfig:
     shadows: bool = True  # whether what looks like a shadow is removed
     close: int = 3  # side of the closing, pixels; 1 leaves it out
     open: int = 3  # of the opening
+    rest: int = 100  # pictures after which foreground that has not moved at all is a thing, no person; 0: never
 
     def __post_init__(self) -> None:
         if self.model not in BACKGROUND_MODELS:
             raise InputError("background model", expected=" | ".join(BACKGROUND_MODELS), got=repr(self.model))
-        if not (self.threshold > 0 and 0 < self.faint <= 1 and self.close >= 1 and self.open >= 1):
-            raise InputError("foreground", expected="threshold above 0, faint above 0 up to 1, close and open from 1",
+        if not (self.threshold > 0 and 0 < self.faint <= 1 and self.close >= 1 and self.open >= 1 and self.rest >= 0):
+            raise InputError("foreground", expected="threshold above 0, faint above 0 up to 1, close and open from 1, rest from 0",
                              got=f"{self.threshold}, {self.faint}, {self.close}, {self.open}")  # fmt: skip
 
 
@@ -54,6 +56,7 @@ class Masks:
     model: BackgroundModel
     empty: NDArray[np.uint8]
     config: MaskConfig
+    things: Things | None = None  # of a plate: other models learn them themselves
 
     @classmethod
     def train(cls, pictures: Sequence[NDArray[np.uint8]], config: MaskConfig | None = None) -> Masks:
@@ -68,7 +71,9 @@ class Masks:
         settings = {name: value for name, value in wanted.items() if name in known}
         # A plate is one picture of the empty scene, which there is now; other models learn from many.
         shown = [empty] if config.model == "plate" else list(pictures)
-        return cls(build_background(config.model, shown, **settings), empty, config)
+        model = build_background(config.model, shown, **settings)
+        things = Things(model, config.rest) if isinstance(model, PlateBackground) else None
+        return cls(model, empty, config, things)
 
     def relit(self, picture: NDArray[np.uint8]) -> NDArray[np.uint8]:
         """A picture (H, W, 3) uint8 BGR in the light of the empty scene: as all that looks at people wants it."""
@@ -76,14 +81,16 @@ class Masks:
 
     def apply(self, picture: NDArray[np.uint8]) -> Mask:
         """Foreground (H, W) bool of a picture (H, W, 3) uint8 BGR in the light of the empty scene."""
-        if not isinstance(self.model, PlateBackground):
-            return self._cleaned(self.model.apply(picture), picture)
-        difference = self.model.difference(picture)
-        faint = self._cleaned(difference > self.config.faint * self.config.threshold, picture)
-        return keep_touching(faint, self._opened(difference > self.config.threshold))
+        if self.things is None:
+            return self._cleaned(self.model.apply(picture), picture, self.empty)
+        difference, background = self.things.compare(picture)
+        faint = self._cleaned(difference > self.config.faint * self.config.threshold, picture, background)
+        mask = keep_touching(faint, self._opened(difference > self.config.threshold))
+        self.things.learn(picture, mask)
+        return mask
 
-    def _cleaned(self, mask: Mask, picture: NDArray[np.uint8]) -> Mask:
-        return self._opened(remove_shadows(mask, picture, self.empty) if self.config.shadows else mask)
+    def _cleaned(self, mask: Mask, picture: NDArray[np.uint8], background: NDArray[np.uint8]) -> Mask:
+        return self._opened(remove_shadows(mask, picture, background) if self.config.shadows else mask)
 
     def _opened(self, mask: Mask) -> Mask:
         """Closed, then opened."""

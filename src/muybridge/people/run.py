@@ -41,6 +41,7 @@ from muybridge.segmentation.pictures import reduce_image
 
 TRACKS_FILE, PARTS_FILE, SCENE_FILE = "tracks.txt", "parts.csv", "scene.png"
 SMALLEST_SIDE = 32  # pixels: a picture with a shorter side shows nobody
+STILL = 10  # moments in a row: what has not moved between them is a thing
 READ_AHEAD = 4  # frames decoded beside the tracking
 Config = TypeVar("Config")
 
@@ -149,10 +150,14 @@ def look_over(
     moments = moments_of(pictures, config)
     chosen = [moments[k] for k in _spread(len(moments), config.plate_moments)]
     masks = Masks.train([reduce_image(pictures.read(index), factor) for index in chosen], config.masks)
+    if masks.things is not None:
+        masks.things.begin(STILL)
     seen = []
     for count, index in enumerate(moments, start=1):
         seen.append(masks.apply(masks.relit(reduce_image(pictures.read(index), factor))))
         progress(count, len(moments), "looking over the clip")
+    if masks.things is not None:
+        masks.things.begin(config.masks.rest)
     return masks, describe(
         masks.empty, seen, person_blobs(config), reduced_mask(occluders, pictures.size, masks.empty.shape)
     )

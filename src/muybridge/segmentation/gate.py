@@ -5,8 +5,7 @@ alone never takes in a door that was opened, nor that the lamps are off. So fore
 
 - more than `FLOOD` of the picture is foreground: the light has changed, and nobody is that large; but not where
   somebody has been for `LASTING` pictures;
-- a whole component has not moved for `rest` pictures: a thing. Somebody who stands still sways and breathes, so that at
-  least `STIRRING` of the pixels of a person change within seconds;
+- a whole component has not moved for `rest` pictures: a thing (`stillness`);
 - a pixel has been foreground for `patience` pictures in a row, whatever it does.
 
 Elgammal (2002) calls learning background alone a selective update; the three exceptions are not in the papers.
@@ -18,18 +17,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from muybridge.errors import InputError
+from muybridge.segmentation.stillness import Stillness
 
 FLOOD, SETTLE = 0.4, 15
 """Share of the picture; and for how many more pictures it is learnt, while exposure settles."""
 LASTING = 5
 """Pictures for which somebody has been there: what has been foreground for fewer may be the light already."""
-MOVED = 20
-"""Grey values, largest over the channels, from which on a pixel has changed; several deviations of usual noise."""
-STIRRING = 0.02
 
 
 class Gate:
-    """Counts for how many pictures each pixel has been foreground, and for how many it has looked the same.
+    """Counts for how many pictures each pixel has been foreground.
 
     Parameters
     ----------
@@ -41,10 +38,9 @@ class Gate:
     """
 
     def __init__(self, shape: tuple[int, int], patience: int, rest: int = 0) -> None:
-        self.patience, self.rest = patience, rest
+        self.patience = patience
         self._age = np.zeros(shape, np.int32)
-        self._still = np.zeros(shape, np.int32)
-        self._looked: NDArray | None = None
+        self._stillness = Stillness(shape, rest)
         self._settling = 0
         self._people = np.zeros(shape, bool)
         self._everything = np.ones(shape, bool)
@@ -55,39 +51,12 @@ class Gate:
             return self._everything
         self._age += 1
         self._age *= foreground
-        self._watch(picture)
+        self._stillness.watch(picture)
         self._settling = SETTLE if foreground.mean() > FLOOD else self._settling - 1
         if self._settling > 0:
             return ~self._people
         self._people = self._age >= LASTING
-        return ~foreground | (self._age > self.patience) | self._things(foreground)
-
-    def _watch(self, picture: NDArray) -> None:
-        """Count for how many pictures each pixel has looked as it did when the count began."""
-        import cv2
-
-        if self._looked is None:
-            self._looked = picture.copy()
-        apart = np.asarray(cv2.absdiff(picture, self._looked)).reshape(picture.shape)
-        moved: NDArray = apart[..., 0] > MOVED
-        for channel in range(1, picture.shape[2]):
-            moved |= apart[..., channel] > MOVED
-        self._looked[moved] = picture[moved]
-        self._still += 1
-        self._still[moved] = 0
-
-    def _things(self, foreground: NDArray) -> NDArray:
-        """(H, W) bool: components of which next to nothing has moved for `rest` pictures."""
-        import cv2
-
-        if not self.rest or not (foreground & (self._still >= self.rest)).any():
-            return np.zeros_like(foreground)
-        count, label = cv2.connectedComponents(foreground.view(np.uint8), connectivity=8)
-        pixels = np.bincount(label.ravel(), minlength=count)
-        moved = np.bincount(label[self._still < self.rest], minlength=count)
-        thing = moved <= STIRRING * pixels
-        thing[0] = False
-        return thing[label]
+        return ~foreground | (self._age > self.patience) | self._stillness.things(foreground)
 
 
 def check_patience(what: str, patience: int, rest: int = 0) -> None:
