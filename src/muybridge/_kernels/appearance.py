@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from muybridge._kernels._jit import exact_kernel
@@ -58,3 +60,40 @@ def fill_claims(codes, left, top, near, far, near_colours, far_colours, share, b
             nearer = covers * near_colours[near_band, code]
             further = (1.0 - covers) * _cover(y, left + j, far, share, beyond) * far_colours[far_band, code]
             out[i, j] = nearer / (nearer + further)
+
+
+@exact_kernel
+def fill_band_sums(codes, share, ratios, table):
+    """Fill table (h + 1, w + 1, B) float64: summed log ratios of the pixels above row y, left of x, were they in band b.
+
+    codes (h, w) int16; share (h, w) float32, how far each pixel counts; ratios (CODES, B) float32
+    """
+    bands = ratios.shape[1]
+    line = np.empty(bands)
+    table[0] = 0.0
+    for y in range(codes.shape[0]):
+        line[:] = 0.0
+        table[y + 1, 0] = 0.0
+        for x in range(codes.shape[1]):
+            if share[y, x] > 0:
+                for b in range(bands):
+                    line[b] += np.float64(share[y, x]) * ratios[codes[y, x], b]
+            for b in range(bands):
+                table[y + 1, x + 1, b] = table[y, x + 1, b] + line[b]
+
+
+@exact_kernel
+def band_scores(table, left, top, states, out):
+    """Fill out (N,) float64: the log ratios of boxes (N, >= 4), centre and size, each pixel in the band it is in."""
+    height, width, bands = table.shape[0] - 1, table.shape[1] - 1, table.shape[2]
+    for n in range(states.shape[0]):
+        x0, y0 = states[n, 0] - states[n, 2] / 2 - left, states[n, 1] - states[n, 3] / 2 - top
+        first = min(max(np.int64(math.ceil(x0)), 0), width)
+        last = min(max(np.int64(math.ceil(x0 + states[n, 2])), 0), width)
+        above = min(max(np.int64(math.ceil(y0)), 0), height)
+        total = 0.0
+        for b in range(bands):
+            below = min(max(np.int64(math.ceil(y0 + (b + 1) * states[n, 3] / bands)), 0), height)
+            total += table[below, last, b] - table[below, first, b] - table[above, last, b] + table[above, first, b]
+            above = below
+        out[n] = total

@@ -14,22 +14,33 @@ Davis (2001) and Senior et al. (2006).
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
-from muybridge._kernels.appearance import CHROMA, CODES, LUMA, fill_claims, fill_codes
+from muybridge._kernels.appearance import (
+    CHROMA,
+    CODES,
+    LUMA,
+    band_scores,
+    fill_band_sums,
+    fill_claims,
+    fill_codes,
+)
 from muybridge.filters.particles import FloatArray
 from muybridge.people.blobs import Mask
 from muybridge.people.colour_likelihood import Picture, pixel_boxes
+from muybridge.people.histograms import inside
 from muybridge.people.silhouette import HIGHEST, Silhouette
 
 BANDS = 8
 EVEN = 0.02  # of a band's pixels: any colour, as likely as any other
 BEYOND = 0.1  # how often a person covers a pixel outside the box where he is expected: boxes are off
 LONGEST = 25  # looks that are remembered: the newest weighs one in so many
+CLEAREST = 2.0  # nats: the most that one pixel's colour says
 KERNEL = np.array([0.25, 0.5, 0.25])
 
 
@@ -74,14 +85,14 @@ def colour_codes(picture: Picture) -> NDArray[np.int16]:
 
 
 def claims(
-    codes: NDArray[np.int16], place: tuple[slice, slice], near: tuple[FloatArray, Appearance],
-    far: tuple[FloatArray, Appearance], silhouette: Silhouette,
+    codes: NDArray[np.int16], place: tuple[slice, slice], near: tuple[FloatArray, NDArray[np.float32]],
+    far: tuple[FloatArray, NDArray[np.float32]], silhouette: Silhouette,
 ) -> NDArray[np.float32]:
     """Of a part of the picture: how probable it is that a foreground pixel shows the nearer of two people."""
     part = codes[place]
     out = np.empty(part.shape, np.float32)
     share = np.clip(silhouette.share, BEYOND, HIGHEST)
-    fill_claims(part, place[1].start, place[0].start, near[0], far[0], near[1].colours, far[1].colours, share, BEYOND, out)
+    fill_claims(part, place[1].start, place[0].start, near[0], far[0], near[1], far[1], share, BEYOND, out)
     return out
 
 
@@ -93,3 +104,38 @@ def _histograms(codes: NDArray[np.int16], mask: Mask, box: FloatArray) -> NDArra
     band = np.minimum((y + rows.start - top) * BANDS // max(1, height), BANDS - 1)
     counts = np.bincount(band * CODES + codes[rows, columns][y, x], minlength=BANDS * CODES).reshape(BANDS, CODES)
     return (counts / np.maximum(1, counts.sum(axis=1, keepdims=True))).astype(np.float32)
+
+
+def anybody(known: Sequence[Appearance]) -> NDArray[np.float32]:
+    """(CODES,) float32: density of the colours of all these people, whatever the band."""
+    return np.mean([one.colours.mean(axis=0) for one in known], axis=0, dtype=np.float32)
+
+
+@dataclass(frozen=True, eq=False)
+class AppearanceLikelihood:
+    """One frame, seen with one person in mind: log of L over the density of anybody's colours, pixel by pixel.
+
+    codes (H, W) int16; counted (H, W) float32, how far each pixel is foreground that may be theirs; ratios (CODES,
+    BANDS) float32; scale : of the sum over pixels
+    """
+
+    codes: NDArray[np.int16]
+    counted: NDArray[np.float32]
+    ratios: NDArray[np.float32]
+    scale: float
+
+    def log_prob(self, states: FloatArray) -> FloatArray:
+        """(N,) of boxes (N, >= 4)."""
+        left, top, right, bottom = inside(pixel_boxes(states)[1], self.codes.shape)
+        part = slice(top, bottom), slice(left, right)
+        table = np.empty((bottom - top + 1, right - left + 1, BANDS))
+        fill_band_sums(self.codes[part], self.counted[part], self.ratios, table)
+        out = np.empty(len(states))
+        band_scores(table, left, top, np.ascontiguousarray(states, dtype=np.float64), out)
+        return self.scale * out
+
+
+def log_ratios(person: Appearance, anybody_: NDArray[np.float32]) -> NDArray[np.float32]:
+    """(CODES, BANDS) float32, each at most `CLEAREST`."""
+    ratios = np.log(person.colours / anybody_)
+    return np.ascontiguousarray(np.clip(ratios, -CLEAREST, CLEAREST).T)

@@ -21,7 +21,7 @@ from muybridge._kernels.occupancy import fill_sums, silhouette_scores
 from muybridge.errors import InputError
 from muybridge.filters.particles import FloatArray
 from muybridge.filters.state import Likelihood
-from muybridge.people.appearance import Appearance, claims
+from muybridge.people.appearance import claims
 from muybridge.people.blobs import Mask
 from muybridge.people.colour_likelihood import pixel_boxes
 from muybridge.people.histograms import Hull, inside
@@ -50,10 +50,10 @@ class ForegroundConfig:
 
 @dataclass(frozen=True, eq=False)
 class Claim:
-    """Where somebody is, or is expected (>= 4,), and what they look like, where that is known."""
+    """Where somebody is, or is expected (>= 4,), and densities (BANDS, CODES) of their colours, where those are known."""
 
     box: FloatArray
-    appearance: Appearance | None = None
+    colours: NDArray[np.float32] | None = None
 
 
 class Evidence:
@@ -90,18 +90,18 @@ class Evidence:
         view.weights, view.share = self._open.copy(), self.share
         for other in nearer:
             core, place = middle(other.box, self.config.core), middle(other.box, 1.0)
-            if person.appearance is None or other.appearance is None:
+            if person.colours is None or other.colours is None:
                 view.weights[core] = 0
             elif not _is_empty(place, self.mask.shape):
-                whose = claims(codes, place, (other.box, other.appearance), (person.box, person.appearance), self.silhouette)
+                whose = claims(codes, place, (other.box, other.colours), (person.box, person.colours), self.silhouette)
                 view.weights[core] *= self.mask[core]
                 view.weights[place] *= np.where(self.mask[place], 1 - whose, 1)
         for other in further:
             core, place = middle(other.box, self.config.core), middle(other.box, 1.0)
-            if person.appearance is None or other.appearance is None:
+            if person.colours is None or other.colours is None:
                 view.weights[core] *= np.float32(self.config.shared)
             elif not _is_empty(place, self.mask.shape):
-                whose = claims(codes, place, (person.box, person.appearance), (other.box, other.appearance), self.silhouette)
+                whose = claims(codes, place, (person.box, person.colours), (other.box, other.colours), self.silhouette)
                 if view.share is self.share:
                     view.share = self.share.copy()
                 view.share[place] *= whose

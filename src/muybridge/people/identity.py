@@ -102,8 +102,11 @@ class Identities:
         self._meetings: dict[frozenset[Person], Meeting] = {}
         self._likeness: dict[tuple[Person, int], list[float]] = {}
 
-    def step(self, frame: Frame, people: list[Person], clear: set[Person], gone: list[Person]) -> None:
-        """One frame, after everybody was followed. Exchanges and takes up identities; remembers looks of the clear."""
+    def step(self, frame: Frame, people: list[Person], clear: set[Person], gone: list[Person]) -> set[Person]:
+        """One frame, after everybody was followed. Exchanges and takes up identities; remembers looks of the clear.
+
+        Returns those whom somebody new has turned out to be: they are followed no more.
+        """
         picture, number = frame.picture, frame.number
         known = {*people, *(lost for lost in gone if number - lost.sightings[-1].frame <= self._memory)}
         self._meetings = {pair: meeting for pair, meeting in self._meetings.items() if pair <= known}
@@ -115,10 +118,13 @@ class Identities:
             if followed and followed <= clear:
                 self._compare(picture, *sorted(pair, key=lambda person: person.lost))
         uncertain = {person for pair in self._meetings for person in pair}
+        found: set[Person] = set()
         for person in people:
             if person in clear and person not in uncertain:
                 person.remember(picture, frame.codes, frame.evidence.mask)
-                self._recall(picture, number, person, gone)
+                waiting = [one for one in people if one.missing and one not in found]
+                found |= self._recall(picture, number, person, gone + waiting)
+        return found
 
     def forget(self, known: set[Person]) -> None:
         """Keep only what concerns these."""
@@ -148,12 +154,12 @@ class Identities:
                 exchange(a, b, meeting.closest)
             del self._meetings[frozenset((a, b))]
 
-    def _recall(self, picture: Picture, number: int, person: Person, gone: list[Person]) -> None:
-        """Whether somebody new is somebody lost: as many looks as for an exchange, then the most alike, if at all."""
+    def _recall(self, picture: Picture, number: int, person: Person, missed: list[Person]) -> set[Person]:
+        """Whether somebody new is somebody lost or hidden: as many looks as for an exchange, then the most alike."""
         if number - person.sightings[0].frame > self._memory:
-            return
+            return set()
         distance = {}
-        for lost in gone:
+        for lost in missed:
             if self._may_be(person, lost, number):
                 # By identity, which goes with the look: the lost one's may have been exchanged meanwhile.
                 values = self._likeness.setdefault((person, lost.identity), [])
@@ -161,9 +167,10 @@ class Identities:
                 if len(values) >= self.config.looks:
                     distance[lost] = float(np.mean(values[-self.config.looks :]))
         best = min(distance, key=distance.__getitem__, default=None)
-        if best is not None and distance[best] < self.config.alike:
-            take_up(person, best)
-            gone.remove(best)
+        if best is None or distance[best] >= self.config.alike:
+            return set()
+        take_up(person, best)
+        return {best}
 
     def _may_be(self, person: Person, lost: Person, number: int) -> bool:
         """Seen last before the other was, not too long ago, not at a side, and near enough to have walked there."""

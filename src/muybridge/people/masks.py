@@ -85,9 +85,8 @@ class Masks:
             return self._cleaned(self.model.apply(picture), picture, self.empty)
         difference, background = self.things.compare(picture)
         faint = self._cleaned(difference > self.config.faint * self.config.threshold, picture, background)
-        mask = keep_touching(faint, self._opened(difference > self.config.threshold))
-        self.things.learn(picture, mask)
-        return mask
+        self.things.learn(picture, faint)
+        return keep_touching(faint, self._opened(difference > self.config.threshold))
 
     def _cleaned(self, mask: Mask, picture: NDArray[np.uint8], background: NDArray[np.uint8]) -> Mask:
         return self._opened(remove_shadows(mask, picture, background) if self.config.shadows else mask)

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from muybridge.filters.particles import FloatArray
 from muybridge.filters.state import Likelihood
-from muybridge.people.appearance import Appearance
+from muybridge.people.appearance import Appearance, AppearanceLikelihood, log_ratios
 from muybridge.people.blobs import Mask
 from muybridge.people.box import HEIGHT, WIDTH, BoxMotion, CountConfig, X, Y
 from muybridge.people.colour_likelihood import ColourConfig, Picture
@@ -23,6 +23,7 @@ from muybridge.people.identity import Look
 from muybridge.people.part_filters import Parts
 
 TRUST_COLOUR = 0.6  # share of the box that must be visible: below, the histogram is of somebody else
+APPEARANCE = 0.5
 TRUST_WHOLE = 0.8  # to learn what the person looks like
 ENOUGH_LOOKS = 4  # frames
 SHORTEST, TALLEST = 0.6, 1.25  # of people's mean height: a child of five, and hardly anybody
@@ -129,6 +130,7 @@ def follow(
     motion: BoxMotion,
     counts: CountConfig,
     ground: GroundScale | None,
+    anybody: NDArray[np.float32] | None,
 ) -> None:
     """One frame of the body's filter, of what is evidence for this person."""
     body, evidence = person.body, frame.evidence
@@ -137,7 +139,11 @@ def follow(
     cues: list[Likelihood] = [evidence.observe(usual_area(body.box, ground))]
     if ground is not None:
         cues.append(ground)
-    if evidence.seen(body.expected)[0] >= TRUST_COLOUR:
+    if person.appearance is not None and anybody is not None:
+        scale = APPEARANCE * evidence.config.looks / usual_area(body.box, ground)
+        counted = evidence.share * evidence.weights
+        cues.append(AppearanceLikelihood(frame.codes, counted, log_ratios(person.appearance, anybody), scale))
+    elif evidence.seen(body.expected)[0] >= TRUST_COLOUR:
         cues.append(colour)
     body.step(person.rng, Together(tuple(cues)), motion, counts)
     person.visible, person.filled = evidence.seen(body.box)

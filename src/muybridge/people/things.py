@@ -13,6 +13,7 @@ from muybridge.people.blobs import Mask
 from muybridge.segmentation.plate import PlateBackground
 from muybridge.segmentation.stillness import Stillness
 
+SMALLEST = 200  # pixels: feet stand as still as things, where the legs above them are missing
 FRINGE = 5  # side of the square, pixels, by which a thing is grown: masks miss its rim
 
 
@@ -32,7 +33,7 @@ class Things:
 
     def begin(self, rest: int) -> None:
         """Keep what is known; from now on so many pictures make a thing, of which none was seen yet."""
-        self._stillness = Stillness(self._known.shape, rest)
+        self._stillness = Stillness(self._known.shape, rest, SMALLEST)
 
     def compare(self, picture: NDArray[np.uint8]) -> tuple[NDArray[np.float32], NDArray[np.uint8]]:
         """How far a picture is from the background, (H, W), in the plate's units, and the background it is nearest to.

@@ -18,6 +18,7 @@ import numpy as np
 from muybridge.errors import InputError
 from muybridge.evaluation.boxes import overlaps
 from muybridge.filters.particles import FloatArray
+from muybridge.people.appearance import BANDS, anybody
 from muybridge.people.blobs import BlobConfig, Mask, find_people
 from muybridge.people.box import PRINTED_VARIANCES, BoxMotion, CountConfig, boxes_from_states, states_from_boxes
 from muybridge.people.colour_likelihood import ColourConfig, Picture
@@ -121,12 +122,14 @@ class PeopleTracker:
         evidence = Evidence(mask, self.scene.silhouette, self.config.foreground, hidden)
         frame = Frame(number, to_luma_chroma(picture), self._background, evidence)
         order = sorted(self.people, key=nearness)
+        known = [person.appearance for person in self.people if person.appearance is not None]
+        self._anybody = anybody(known) if known else None
         nearer: list[Claim] = []
         for rank, person in enumerate(order):
-            further = [Claim(other.body.expected, other.appearance) for other in order[rank + 1 :]]
+            further = [self._claim(other, other.body.expected) for other in order[rank + 1 :]]
             self._follow(person, frame, nearer, further)
             if not person.unseen:
-                nearer.append(Claim(person.body.box, person.appearance))
+                nearer.append(self._claim(person, person.body.box))
         self._give_up(frame)
         self._tell_apart(frame)
         self._welcome(frame)
@@ -170,9 +173,9 @@ class PeopleTracker:
     def _follow(self, person: Person, frame: Frame, nearer: list[Claim], further: list[Claim]) -> None:
         """The body, what can be seen of it, the parts; and what the body explains."""
         all_of_it = frame.evidence
-        mine = Claim(person.body.expected, person.appearance)
+        mine = self._claim(person, person.body.expected)
         frame = replace(frame, evidence=all_of_it.of(mine, _touching(mine, nearer), _touching(mine, further), frame.codes))
-        follow(person, frame, self._motion, self.config.counts, self.scene.ground)
+        follow(person, frame, self._motion, self.config.counts, self.scene.ground, self._anybody)
         if person.visible < HIDDEN:
             person.hidden += 1
         elif person.filled < EMPTY * self.scene.silhouette.mean:
@@ -189,6 +192,12 @@ class PeopleTracker:
         person.sightings.append(Sighting(frame.number, box, score, not person.missing, parts))
         if not person.unseen:
             all_of_it.explain(box)
+
+    def _claim(self, person: Person, box: FloatArray) -> Claim:
+        """Whose look is not known yet looks like anybody."""
+        if person.appearance is not None:
+            return Claim(box, person.appearance.colours)
+        return Claim(box, None if self._anybody is None else np.tile(self._anybody, (BANDS, 1)))
 
     def _give_up(self, frame: Frame) -> None:
         """Those unseen for too long, those too far away, and one of two who are one."""
@@ -226,10 +235,14 @@ class PeopleTracker:
         people = [person for person in self.people if person.confirmed]
         alone = self._shared(people).max(axis=1, initial=0.0) < APART
         clear = {person for person, is_alone in zip(people, alone) if is_alone and self._is_whole(person)}
-        self._identities.step(frame, people, clear, self.gone)
+        found = self._identities.step(frame, people, clear, self.gone)
+        for person in found:
+            person.lost = True
+        self.gone = [person for person in self.gone if person not in found]
+        self.people = [person for person in self.people if person not in found]
         if self.scene.ground is not None:
             self._measure(clear, frame.evidence, self.scene.ground)
-        for person in people:
+        for person in self.people:
             if person in clear and person.parts is None:
                 person.parts = Parts.start(person.rng, person.body.box, frame, self._rules)
 

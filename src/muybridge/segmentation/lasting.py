@@ -4,9 +4,11 @@ A median takes for empty what is seen most often, and so learns whoever stands f
 went was neither there before nor after, and the floor was. So each pixel takes the colour that lasts: the share of the
 clip between the first time it is seen and the last, plus a quarter of the share of moments that show it. The latter
 decides where several are seen from beginning to end: the floor, and clothes of one colour that pass early and late.
+What came after the beginning and went before the end counts half: before a door that opens meanwhile, neither look of
+it lasts as long as somebody who lingers there.
 
-What changes and never changes back (a door that opens and stays open) is learnt as it is for the longer time; so is
-somebody who stays until the end, or was there from the beginning.
+What changes and never changes back (that door) is learnt as it is for the longer time; so is somebody who stays until
+the end, or was there from the beginning.
 """
 
 from __future__ import annotations
@@ -24,6 +26,7 @@ TOLERANCE = 14
 """Grey values, in each channel: four to five deviations of a sensor's noise."""
 FEWEST = 3  # moments that show a colour; fewer are chance
 OFTEN = 0.25  # weight of how often against how long: who stays for up to five sixths of the time is not learnt
+PASSING = 0.5  # of that counts for what came after the beginning and went before the end, as somebody who lingers
 TRIED = 20  # colours a pixel, evenly spread over the moments
 ENOUGH = 8  # moments; of fewer there is only a median
 
@@ -36,5 +39,5 @@ def lasting_picture(pictures: Sequence[NDArray[np.uint8]]) -> NDArray[np.uint8]:
         raise InputError("background pictures", expected="one size", got="several sizes")
     pixels = np.stack(pictures, axis=2)
     shown = np.zeros(pixels.shape[:3], np.bool_)
-    over_rows_lasting(pixels, -(-len(pictures) // TRIED), TOLERANCE, FEWEST, OFTEN, shown)
+    over_rows_lasting(pixels, -(-len(pictures) // TRIED), TOLERANCE, FEWEST, OFTEN, PASSING, shown)
     return median_picture(pictures, list(np.moveaxis(shown, 2, 0)))

@@ -22,10 +22,12 @@ class Stillness:
     shape : (H, W)
     rest : int
         Pictures after which what does not move is a thing; with 0 nothing ever is.
+    smallest : int
+        Pixels of a thing.
     """
 
-    def __init__(self, shape: tuple[int, int], rest: int) -> None:
-        self.rest = rest
+    def __init__(self, shape: tuple[int, int], rest: int, smallest: int = 1) -> None:
+        self.rest, self.smallest = rest, smallest
         self._still = np.zeros(shape, np.int32)
         self._looked: NDArray | None = None
 
@@ -47,7 +49,7 @@ class Stillness:
         count, label = cv2.connectedComponents(foreground.view(np.uint8), connectivity=8)
         pixels = np.bincount(label.ravel(), minlength=count)
         moved = np.bincount(label[self._still < self.rest], minlength=count)
-        thing = moved <= STIRRING * pixels
+        thing = (moved <= STIRRING * pixels) & (pixels >= self.smallest)
         thing[0] = False
         return thing[label]
 
