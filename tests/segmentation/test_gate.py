@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from muybridge.errors import InputError
-from muybridge.segmentation.gate import FLOOD, LASTING, MOVED, SETTLE, STIRRING, Gate
+from muybridge.segmentation.gate import FLOOD, LASTING, SETTLE, Gate
+from muybridge.segmentation.stillness import MOVED, STIRRING
 from muybridge.segmentation.kde import KdeConfig
 
 SHAPE = (40, 50)

@@ -28,6 +28,7 @@ from muybridge.people.histograms import Hull, inside
 from muybridge.people.silhouette import Silhouette
 
 AROUND = 0.2  # of a box's size: how far an outline may be larger
+HIDES = 0.5  # probability that a pixel is a nearer one's, from which on it says nothing of others
 SCRAP = 0.15  # of the largest region: what is smaller is none of a person
 Place = tuple[slice, slice]
 """Rows and columns."""
@@ -95,7 +96,7 @@ class Evidence:
             elif not _is_empty(place, self.mask.shape):
                 whose = claims(codes, place, (other.box, other.colours), (person.box, person.colours), self.silhouette)
                 view.weights[core] *= self.mask[core]
-                view.weights[place] *= np.where(self.mask[place], 1 - whose, 1)
+                view.weights[place] *= np.where(self.mask[place], np.where(whose < HIDES, 1 - whose, 0), 1)
         for other in further:
             core, place = middle(other.box, self.config.core), middle(other.box, 1.0)
             if person.colours is None or other.colours is None:

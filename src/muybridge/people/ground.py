@@ -38,7 +38,7 @@ class GroundScale:
     offset: float
     slope: float
     aspect: float
-    spread: float = 0.06
+    spread: float = 0.04
 
     def __post_init__(self) -> None:
         if not (np.isfinite([self.offset, self.slope]).all() and self.aspect > 0 and self.spread > 0):

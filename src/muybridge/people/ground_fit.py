@@ -28,11 +28,10 @@ from muybridge.people.ground import SHORTEST, GroundScale, touches_side
 FEWEST = 12  # regions; fewer say nothing about a line
 TRIALS = 400  # pairs of regions of which lines are tried
 FEET_SD = 0.06  # of the height: by how much feet are off
-BELOW, ABOVE = 1.0, 2.0  # nats: the most that one region counts against a line, cut short, or too tall
+BELOW, ABOVE = 1.0, 1.5  # nats: the most that one region counts against a line, cut short, or too tall
 STATURES = np.exp(np.linspace(-0.35, 0.35, 29))  # of people's mean height
-STATURE_SD = 0.1  # of its logarithm: adults have 0.05, and there are children
+STATURE_SD = 0.13  # of its logarithm: adults have 0.05, and there are children
 SLOPES, SLOPE_SD = 0.5, 0.14  # k is how tall people are over how high the camera hangs: about 3 m, over all of a clip
-KNOWN = 3.0  # regions of one person that make the usual stature count in full
 SAME = 3  # pixels: regions whose lower left corners are nearer are one that stands, seen again
 UPRIGHT = (0.15, 0.7)  # width over height of what may be one standing person
 FOLLOWS, BESIDE, ALIKE = 0.3, 0.02, 0.12  # overlap of one region with the next; with any other; logarithm of heights
@@ -102,8 +101,7 @@ class _Regions:
 
     def __init__(self, boxes: FloatArray, person: NDArray[np.int64]) -> None:
         self.feet, self.heights, self.person = boxes[:, 1] + boxes[:, 3] - 0.5, boxes[:, 3], person
-        counts = np.bincount(person)
-        self._usual = 0.5 * np.square(np.log(STATURES) / STATURE_SD) * np.minimum(1, counts / KNOWN)[:, None]
+        self._usual = np.tile(0.5 * np.square(np.log(STATURES) / STATURE_SD), (int(person.max()) + 1, 1))
 
     def off(self, line: FloatArray) -> FloatArray:
         """(N, S) e over the height expected and its standard deviation, for people of each stature."""

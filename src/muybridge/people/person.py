@@ -28,7 +28,7 @@ TRUST_WHOLE = 0.8  # to learn what the person looks like
 ENOUGH_LOOKS = 4  # frames
 SHORTEST, TALLEST = 0.6, 1.25  # of people's mean height: a child of five, and hardly anybody
 NARROWEST, BROADEST = 0.6, 1.6  # of the mean of width over height
-AGREE_TALL, AGREE_WIDE = 0.15, 0.4  # logarithms: of an outline's size over the box's, for it to be believed
+AGREE_TALL, AGREE_WIDE = 0.3, 0.4  # logarithms: of an outline's size over the box's, for it to be believed
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,17 +85,18 @@ class Person:
     parts: Parts | None = None
 
     def measure(self, outline: FloatArray, ground: GroundScale, rate: float) -> None:
-        """Learn how tall they are from their box, and how broad from that of their foreground (4,), where they agree.
+        """Learn how tall and how broad they are from the box of their foreground (4,), where it agrees with their own.
 
-        Only while they are clear to see. Height is learnt whether or not they agree: a child's box, too large at first,
-        has to come down.
+        Only while they are clear to see. Where it does not, it is of somebody else too, or not of all of them; but a
+        child's box, too large at first, comes down: height is then learnt from the box itself.
         """
-        body = self.body.box
-        tall = float(body[HEIGHT] / ground.height(feet(body)))
+        wider, taller = np.abs(np.log(outline[WIDTH : HEIGHT + 1] / self.body.box[WIDTH : HEIGHT + 1]))
+        agrees = taller < AGREE_TALL and wider < AGREE_WIDE
+        box = outline if agrees else self.body.box
+        tall = float(box[HEIGHT] / ground.height(feet(box)))
         self.stature = float(np.clip(self.stature + rate * (tall - self.stature), SHORTEST, TALLEST))
-        wider, taller = np.abs(np.log(outline[WIDTH : HEIGHT + 1] / body[WIDTH : HEIGHT + 1]))
-        if taller < AGREE_TALL and wider < AGREE_WIDE:  # else it is of somebody else too, or not of all of them
-            broad = float(outline[WIDTH] / outline[HEIGHT] / ground.aspect)
+        if agrees:
+            broad = float(box[WIDTH] / box[HEIGHT] / ground.aspect)
             self.breadth = float(np.clip(self.breadth + rate * (broad - self.breadth), NARROWEST, BROADEST))
 
     @property

@@ -146,9 +146,11 @@ class PeopleTracker:
         people = [person for person in self.gone + self.people if person.confirmed]
         settled = gathered(people, (self._settled, frame))
         self._settled = frame
-        for person in self.gone + self.people:  # the first one stays: it says since when somebody is followed
+        for person in self.gone + self.people:
+            # The first one stays: it says since when somebody is followed; and the last sight, for what comes between.
             first, *rest = person.sightings
-            person.sightings = [first, *(sighting for sighting in rest if sighting.frame > frame)]
+            past = [sighting for sighting in rest if sighting.frame <= frame and sighting.seen]
+            person.sightings = [first, *past[-1:], *(sighting for sighting in rest if sighting.frame > frame)]
         self.gone = [person for person in self.gone if person.sightings[-1].frame > frame]
         self._identities.forget({*self.gone, *self.people})
         return settled

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -49,7 +50,7 @@ def gathered(people: Iterable[Person], between: tuple[int, int] | None = None) -
     rows: list[tuple[int, Sighting]] = []
     for person in people:
         last = max((i for i, sighting in enumerate(person.sightings) if sighting.seen), default=-1)
-        mine = person.sightings[: last + 1]
+        mine = bridged(person.sightings[: last + 1])
         rows += [(person.identity, one) for one in mine if between is None or between[0] < one.frame <= between[1]]
     boxes = _column([sighting.box for _, sighting in rows], 6)
     bodies = BoxSeries(
@@ -57,6 +58,27 @@ def gathered(people: Iterable[Person], between: tuple[int, int] | None = None) -
         boxes_from_states(boxes), np.array([sighting.score for _, sighting in rows], np.float64),
     )  # fmt: skip
     return Tracks(bodies, _parts([(i, sighting) for i, sighting in rows if sighting.parts is not None]))
+
+
+def bridged(sightings: list[Sighting]) -> list[Sighting]:
+    """Where nothing was seen of somebody, a straight walk from the last sight of them to the next."""
+    seen = [k for k, sighting in enumerate(sightings) if sighting.seen]
+    found = list(sightings)
+    for before, after in pairwise(seen):
+        first, last = sightings[before], sightings[after]
+        for k in range(before + 1, after):
+            share = (sightings[k].frame - first.frame) / (last.frame - first.frame)
+            found[k] = _moved(sightings[k], first.box + share * (last.box - first.box))
+    return found
+
+
+def _moved(sighting: Sighting, box: FloatArray) -> Sighting:
+    """With another box (6,), and the parts where they were on the old one."""
+    parts = sighting.parts
+    if parts is not None:
+        parts = parts.copy()
+        parts[:, :2] += box[:2] - sighting.box[:2]
+    return replace(sighting, box=box, parts=parts)
 
 
 def _parts(rows: list[tuple[int, Sighting]]) -> PartSeries:
