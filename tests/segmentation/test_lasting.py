@@ -45,6 +45,16 @@ def test_what_changed_for_good_is_as_it_was_longer() -> None:
     assert off(lasting_picture(clip((40, 60)))) < 2 and off(lasting_picture(clip((20, 60)))) > 70
 
 
+def test_who_lingers_before_a_door_that_opens_is_not_learnt(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Shut for 18 moments, then somebody stands before it for 27, then it is open for 15."""
+    pictures = clip((18, 45))
+    for picture in pictures[:18]:
+        picture[6:20, 10:18] -= 50  # the leaf is darker than what is behind
+    assert abs(off(lasting_picture(pictures)) - 50) < 2
+    monkeypatch.setattr("muybridge.segmentation.lasting.PASSING", 1.0)
+    assert off(lasting_picture(pictures)) > 70  # negative control: the coat
+
+
 def test_of_few_pictures_there_is_a_median() -> None:
     pictures = clip((1, 3), moments=5)
     np.testing.assert_array_equal(lasting_picture(pictures), median_picture(pictures))
