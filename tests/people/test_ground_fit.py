@@ -92,8 +92,8 @@ def test_people_cut_short_do_not_flatten_it(monkeypatch: pytest.MonkeyPatch) -> 
     people = [person(feet) for feet in range(180, 470, 6)]
     cut = [Blob(100, feet - 69, np.ones((70, 24), bool)) for feet in range(180, 470, 5)]
     ground = fit_ground(alone(people + cut), PICTURE)
-    # Everybody may be as tall as suits the line: to one step of the statures that are tried, 2.5 % of 130 pixels, and half a
-    # pixel of rounding.
+    # Everybody may be as tall as suits the line: to one step of the statures that are tried, 2.5 % of 130 pixels, and
+    # half a pixel of rounding.
     assert ground is not None and abs(float(ground.height(400.0)) - 130) < 3.75
     monkeypatch.setattr("muybridge.people.ground_fit.ABOVE", 0.2)
     flat = fit_ground(alone(people + cut), PICTURE)

@@ -36,23 +36,20 @@ def test_behind_a_pole_as_wide_as_a_person() -> None:
 
 
 def test_two_who_turn_back_behind_a_pole_are_told_apart_by_their_clothes() -> None:
-    """Each filter expects to walk on, and mostly goes on with the other (six of eight seeds).
-
-    Afterwards their looks put it right, whatever the seed.
-    """
+    """Each filter expects to walk on: what they look like puts it right, whatever the seed."""
     walkers = [
         Walker((60, 170), (158, 170), 0, 29, 0), Walker((158, 170), (60, 170), 30, 59, 0),
         Walker((255, 164), (160, 164), 0, 29, 1), Walker((160, 164), (255, 164), 30, 59, 1),
     ]  # fmt: skip
-    blind = replace(SMALL, identity=replace(SMALL.identity, margin=1e9, alike=0.0))
+    alike = [replace(walker, clothes=0) for walker in walkers]
 
-    def kept(config: TrackerConfig, seed: int) -> bool:
-        boxes = tracked(walkers, 60, pole(140, 178), config, seed).tracks().boxes
-        a, a_later, b, b_later = identities(boxes, walkers, 60)
+    def kept(people: list[Walker], seed: int) -> bool:
+        boxes = tracked(people, 60, pole(140, 178), SMALL, seed).tracks().boxes
+        a, a_later, b, b_later = identities(boxes, people, 60)
         return a[0] == a_later[-1] != 0 and b[0] == b_later[-1] != 0 and a[0] != b[0]
 
-    assert all(kept(SMALL, seed) for seed in range(3))
-    assert not all(kept(blind, seed) for seed in range(3))  # negative control: without looks they are mistaken
+    assert all(kept(walkers, seed) for seed in range(3))
+    assert not all(kept(alike, seed) for seed in range(3))  # negative control: nobody can tell them apart
 
 
 def test_parts_lie_on_the_body_in_their_order() -> None:
@@ -88,7 +85,8 @@ def test_parts_of_the_hidden_one_of_two_learn_nothing() -> None:
             assert all(same) if person.visible < 0.8 else not all(same)
             if person.visible < 0.8:
                 hidden.append(person.body.box[1] + person.body.box[3] / 2)
-    assert len(hidden) >= 3 and max(hidden) < 166  # feet: 160 of the further one, 172 of the nearer
+    # They pass at 9.8 pixels a frame, 21 wide: more than half of one is behind the other for two frames.
+    assert len(hidden) >= 2 and max(hidden) < 166  # feet: 160 of the further one, 172 of the nearer
 
 
 def test_a_lone_walker_is_never_lost(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -7,8 +7,8 @@ import pytest
 
 from muybridge.errors import InputError
 from muybridge.segmentation.gate import FLOOD, LASTING, SETTLE, Gate
-from muybridge.segmentation.stillness import MOVED, STIRRING
 from muybridge.segmentation.kde import KdeConfig
+from muybridge.segmentation.stillness import MOVED, STIRRING
 
 SHAPE = (40, 50)
 PICTURE = np.full((*SHAPE, 3), 90, np.uint8)

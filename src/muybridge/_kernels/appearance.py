@@ -19,10 +19,11 @@ def fill_codes(picture, out):
     """Fill out (H, W) int16 with the bins of a picture (H, W, 3) uint8, Y Cr Cb."""
     for y in range(picture.shape[0]):
         for x in range(picture.shape[1]):
-            luma = np.int64(picture[y, x, 0]) * LUMA // 256
-            red = min(max((np.int64(picture[y, x, 1]) - _FIRST) // 8, 0), CHROMA - 1)
-            blue = min(max((np.int64(picture[y, x, 2]) - _FIRST) // 8, 0), CHROMA - 1)
-            out[y, x] = (luma * CHROMA + red) * CHROMA + blue
+            code = np.int64(picture[y, x, 0]) * LUMA // 256
+            for channel in range(1, 3):
+                chroma = (np.int64(picture[y, x, channel]) - _FIRST) // 8
+                code = code * CHROMA + min(max(chroma, np.int64(0)), np.int64(CHROMA - 1))
+            out[y, x] = code
 
 
 @exact_kernel
@@ -64,7 +65,7 @@ def fill_claims(codes, left, top, near, far, near_colours, far_colours, share, b
 
 @exact_kernel
 def fill_band_sums(codes, share, ratios, table):
-    """Fill table (h + 1, w + 1, B) float64: summed log ratios of the pixels above row y, left of x, were they in band b.
+    """Fill table (h + 1, w + 1, B) float64: summed log ratios of pixels above row y, left of x, were they in band b.
 
     codes (h, w) int16; share (h, w) float32, how far each pixel counts; ratios (CODES, B) float32
     """

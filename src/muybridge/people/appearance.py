@@ -66,13 +66,11 @@ class Appearance:
     @cached_property
     def colours(self) -> NDArray[np.float32]:
         """(BANDS, CODES) float32: densities, smoothed over neighbouring colours and bands."""
+        from scipy.ndimage import correlate1d
+
         spread = self.histograms.reshape(BANDS, LUMA, CHROMA, CHROMA)
         for axis in range(4):
-            padded = np.pad(spread, [(1, 1) if k == axis else (0, 0) for k in range(4)], mode="edge" if axis == 0 else "constant")
-            length = spread.shape[axis]
-            spread = sum(
-                np.float32(weight) * np.take(padded, range(k, k + length), axis=axis) for k, weight in enumerate(KERNEL)
-            )
+            spread = correlate1d(spread, KERNEL, axis=axis, mode="nearest" if axis == 0 else "constant")
         result = (1 - EVEN) * spread.reshape(BANDS, CODES) + EVEN / CODES
         return np.ascontiguousarray(result, dtype=np.float32)
 
@@ -85,8 +83,11 @@ def colour_codes(picture: Picture) -> NDArray[np.int16]:
 
 
 def claims(
-    codes: NDArray[np.int16], place: tuple[slice, slice], near: tuple[FloatArray, NDArray[np.float32]],
-    far: tuple[FloatArray, NDArray[np.float32]], silhouette: Silhouette,
+    codes: NDArray[np.int16],
+    place: tuple[slice, slice],
+    near: tuple[FloatArray, NDArray[np.float32]],
+    far: tuple[FloatArray, NDArray[np.float32]],
+    silhouette: Silhouette,
 ) -> NDArray[np.float32]:
     """Of a part of the picture: how probable it is that a foreground pixel shows the nearer of two people."""
     part = codes[place]

@@ -29,7 +29,7 @@ from muybridge.people.silhouette import Silhouette
 
 AROUND = 0.2  # of a box's size: how far an outline may be larger
 HIDES = 0.5  # probability that a pixel is a nearer one's, from which on it says nothing of others
-SCRAP = 0.15  # of the largest region: what is smaller is none of a person
+SCRAP = 0.02  # of the largest region: what is smaller is noise; feet are more, where legs above them are missing
 Place = tuple[slice, slice]
 """Rows and columns."""
 
@@ -51,7 +51,7 @@ class ForegroundConfig:
 
 @dataclass(frozen=True, eq=False)
 class Claim:
-    """Where somebody is, or is expected (>= 4,), and densities (BANDS, CODES) of their colours, where those are known."""
+    """Where somebody is, or is expected (>= 4,), and densities (BANDS, CODES) of their colours, where known."""
 
     box: FloatArray
     colours: NDArray[np.float32] | None = None
@@ -88,26 +88,33 @@ class Evidence:
         codes : (H, W), see `colour_codes`
         """
         view = copy(self)
-        view.weights, view.share = self._open.copy(), self.share
+        view.weights, view.share = self._open.copy(), self.share.copy()
         for other in nearer:
-            core, place = middle(other.box, self.config.core), middle(other.box, 1.0)
-            if person.colours is None or other.colours is None:
-                view.weights[core] = 0
-            elif not _is_empty(place, self.mask.shape):
-                whose = claims(codes, place, (other.box, other.colours), (person.box, person.colours), self.silhouette)
-                view.weights[core] *= self.mask[core]
-                view.weights[place] *= np.where(self.mask[place], np.where(whose < HIDES, 1 - whose, 0), 1)
+            view._hide(person, other, codes)
         for other in further:
-            core, place = middle(other.box, self.config.core), middle(other.box, 1.0)
-            if person.colours is None or other.colours is None:
-                view.weights[core] *= np.float32(self.config.shared)
-            elif not _is_empty(place, self.mask.shape):
-                whose = claims(codes, place, (person.box, person.colours), (other.box, other.colours), self.silhouette)
-                if view.share is self.share:
-                    view.share = self.share.copy()
-                view.share[place] *= whose
+            view._see_past(person, other, codes)
         view.shown = view.weights > 0.5
         return view
+
+    def _hide(self, person: Claim, other: Claim, codes: NDArray[np.int16]) -> None:
+        """Take off what shows somebody nearer: all of their middle, where it is not known what both look like."""
+        core, place = middle(other.box, self.config.core), middle(other.box, 1.0)
+        if person.colours is None or other.colours is None:
+            self.weights[core] = 0
+        elif self.mask[place].size:
+            whose = claims(codes, place, (other.box, other.colours), (person.box, person.colours), self.silhouette)
+            self.weights[core] *= self.mask[core]
+            self.weights[place] *= np.where(self.mask[place], np.where(whose < HIDES, 1 - whose, 0), 1)
+
+    def _see_past(self, person: Claim, other: Claim, codes: NDArray[np.int16]) -> None:
+        """What shows somebody further away is as good as background; or tells less, where looks are not known."""
+        core, place = middle(other.box, self.config.core), middle(other.box, 1.0)
+        if person.colours is None or other.colours is None:
+            self.weights[core] *= np.float32(self.config.shared)
+        elif self.mask[place].size:
+            self.share[place] *= claims(
+                codes, place, (person.box, person.colours), (other.box, other.colours), self.silhouette
+            )
 
     def explain(self, state: FloatArray, share: float | None = None) -> None:
         """What the middle of this box (>= 4,) covers says nothing about those behind it."""
@@ -191,11 +198,6 @@ def middle(state: FloatArray, share: float) -> Place:
     x, y, width, height = state[:4]
     _, (left, top, right, bottom) = pixel_boxes(np.array([[x, y, share * width, height]]))
     return slice(max(0, top), max(0, bottom)), slice(max(0, left), max(0, right))
-
-
-def _is_empty(place: Place, shape: tuple[int, ...]) -> bool:
-    rows, columns = place
-    return rows.start >= min(rows.stop, shape[0]) or columns.start >= min(columns.stop, shape[1])
 
 
 def _holds(outer: Hull, inner: Hull) -> bool:

@@ -16,7 +16,9 @@ from muybridge.errors import InputError
 from muybridge.filters.particles import FloatArray
 from muybridge.people.blobs import Blob
 
-NEAR = 0.1  # of the expected height: what agrees with the line; people differ by 4 % (standard deviation), masks by more
+NEAR = (
+    0.1  # of the expected height: what agrees with the line; people differ by 4 % (standard deviation), masks by more
+)
 SHORTEST = 8.0  # pixels, whatever the line says
 
 

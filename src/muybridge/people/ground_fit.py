@@ -38,7 +38,7 @@ FOLLOWS, BESIDE, ALIKE = 0.3, 0.02, 0.12  # overlap of one region with the next;
 
 
 def fit_ground(moments: Sequence[Sequence[Blob]], picture: tuple[int, int]) -> GroundScale | None:
-    """The line that regions of several moments agree on, of a picture (width, height); None where too few may be people.
+    """The line that regions of several moments agree on, of a picture (width, height); None where they are too few.
 
     Regions that touch a side of the picture are cut off and say nothing.
     """

@@ -196,6 +196,7 @@ def exchange(a: Person, b: Person, frame: int) -> None:
     a.identity, b.identity = b.identity, a.identity
     a.look, b.look = b.look, a.look
     a.appearance, b.appearance = b.appearance, a.appearance
+    a.usual, b.usual = b.usual, a.usual
     a.stature, b.stature = b.stature, a.stature
     a.breadth, b.breadth = b.breadth, a.breadth
     a.last_clear, b.last_clear = b.last_clear, a.last_clear

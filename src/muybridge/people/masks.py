@@ -42,8 +42,9 @@ class MaskConfig:
         if self.model not in BACKGROUND_MODELS:
             raise InputError("background model", expected=" | ".join(BACKGROUND_MODELS), got=repr(self.model))
         if not (self.threshold > 0 and 0 < self.faint <= 1 and self.close >= 1 and self.open >= 1 and self.rest >= 0):
-            raise InputError("foreground", expected="threshold above 0, faint above 0 up to 1, close and open from 1, rest from 0",
-                             got=f"{self.threshold}, {self.faint}, {self.close}, {self.open}")  # fmt: skip
+            got = f"{self.threshold}, {self.faint}, {self.close}, {self.open}, {self.rest}"
+            expected = "threshold above 0, faint above 0 up to 1, close and open from 1, rest from 0"
+            raise InputError("foreground", expected=expected, got=got)
 
 
 @dataclass(frozen=True, eq=False)

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from muybridge.filters.particles import FloatArray
 from muybridge.filters.state import Likelihood
-from muybridge.people.appearance import Appearance, AppearanceLikelihood, log_ratios
+from muybridge.people.appearance import LONGEST, Appearance, AppearanceLikelihood, log_ratios
 from muybridge.people.blobs import Mask
 from muybridge.people.box import HEIGHT, WIDTH, BoxMotion, CountConfig, X, Y
 from muybridge.people.colour_likelihood import ColourConfig, Picture
@@ -24,6 +24,7 @@ from muybridge.people.part_filters import Parts
 
 TRUST_COLOUR = 0.6  # share of the box that must be visible: below, the histogram is of somebody else
 APPEARANCE = 0.5
+UNLIKE, DOUBT = 0.5, 0.25  # share of the usual likeness, and nats a pixel below that: then it is somebody else
 TRUST_WHOLE = 0.8  # to learn what the person looks like
 ENOUGH_LOOKS = 4  # frames
 SHORTEST, TALLEST = 0.6, 1.25  # of people's mean height: a child of five, and hardly anybody
@@ -57,6 +58,9 @@ class Person:
         Frames in a row: nothing was seen; somebody nearer or an occluder covered the box; another had the same box.
     visible, filled : float
         Of the box now: the share that can be seen, and the share of that which is foreground.
+    alike, usual : float
+        Nats a pixel by which that looks like this person more than like anybody; and the mean of that while it was
+        clear to see.
     looks : int
         Frames from which `look` was learnt.
     stature, breadth : float
@@ -75,6 +79,8 @@ class Person:
     doubled: int = 0
     visible: float = 1.0
     filled: float = 1.0
+    alike: float = 0.0
+    usual: float = 0.0
     sightings: list[Sighting] = field(default_factory=list)
     look: Look | None = None
     appearance: Appearance | None = None
@@ -100,6 +106,11 @@ class Person:
             self.breadth = float(np.clip(self.breadth + rate * (broad - self.breadth), NARROWEST, BROADEST))
 
     @property
+    def is_another(self) -> bool:
+        """Whether what is in the box looks much less like them than it used to."""
+        return self.alike < UNLIKE * self.usual - DOUBT
+
+    @property
     def missing(self) -> int:
         """Frames in a row without a sight of them."""
         return self.unseen + self.hidden
@@ -116,6 +127,7 @@ class Person:
             self.appearance = Appearance.learn(codes, mask, box)
         else:
             self.appearance = self.appearance.updated(codes, mask, box)
+            self.usual += (self.alike - self.usual) / min(self.appearance.looks, LONGEST)
         self.look = Look.learn(picture, box, self.colour) if self.look is None else self.look.updated(picture, box)
         self.looks += 1
         self.last_clear = self.sightings[-1]
@@ -140,14 +152,18 @@ def follow(
     cues: list[Likelihood] = [evidence.observe(usual_area(body.box, ground))]
     if ground is not None:
         cues.append(ground)
+    looks = None
     if person.appearance is not None and anybody is not None:
         scale = APPEARANCE * evidence.config.looks / usual_area(body.box, ground)
         counted = evidence.share * evidence.weights
-        cues.append(AppearanceLikelihood(frame.codes, counted, log_ratios(person.appearance, anybody), scale))
+        looks = AppearanceLikelihood(frame.codes, counted, log_ratios(person.appearance, anybody), scale)
+        cues.append(looks)
     elif evidence.seen(body.expected)[0] >= TRUST_COLOUR:
         cues.append(colour)
     body.step(person.rng, Together(tuple(cues)), motion, counts)
     person.visible, person.filled = evidence.seen(body.box)
+    pixels = person.visible * person.filled * float(body.box[2] * body.box[3])
+    person.alike = 0.0 if looks is None else float(looks.log_prob(body.box[None])[0]) / looks.scale / max(1.0, pixels)
     if person.visible >= TRUST_WHOLE and person.filled >= 0.5 * evidence.silhouette.mean:
         body.target = body.target.updated(colour.histogram(body.box))
 

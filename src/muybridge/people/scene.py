@@ -60,4 +60,6 @@ def describe(
     occluders = find_occluders(masks, ground)
     if drawn is not None:
         occluders |= drawn
-    return Scene(background, ground, learn_silhouette([blob for people in moments for blob in people], ground, size), occluders)
+    return Scene(
+        background, ground, learn_silhouette([blob for people in moments for blob in people], ground, size), occluders
+    )

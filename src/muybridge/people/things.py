@@ -20,20 +20,22 @@ FRINGE = 5  # side of the square, pixels, by which a thing is grown: masks miss 
 class Things:
     """The looks of things, where any are known.
 
-    empty : (H, W, 3) uint8, the empty scene
+    plate : PlateBackground, of the empty scene
     rest : int, pictures after which what does not move is a thing; 0: never
     """
 
     def __init__(self, plate: PlateBackground, rest: int) -> None:
         self._plate = plate
         self._picture = plate.background.copy()
-        self._known = np.zeros(self._picture.shape[:2], bool)
+        height, width, _ = self._picture.shape
+        self._known = np.zeros((height, width), bool)
         self._looks: tuple[tuple[slice, slice], PlateBackground] | None = None
         self.begin(rest)
 
     def begin(self, rest: int) -> None:
         """Keep what is known; from now on so many pictures make a thing, of which none was seen yet."""
-        self._stillness = Stillness(self._known.shape, rest, SMALLEST)
+        height, width, _ = self._picture.shape
+        self._stillness = Stillness((height, width), rest, SMALLEST)
 
     def compare(self, picture: NDArray[np.uint8]) -> tuple[NDArray[np.float32], NDArray[np.uint8]]:
         """How far a picture is from the background, (H, W), in the plate's units, and the background it is nearest to.

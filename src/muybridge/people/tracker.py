@@ -176,11 +176,13 @@ class PeopleTracker:
         """The body, what can be seen of it, the parts; and what the body explains."""
         all_of_it = frame.evidence
         mine = self._claim(person, person.body.expected)
-        frame = replace(frame, evidence=all_of_it.of(mine, _touching(mine, nearer), _touching(mine, further), frame.codes))
+        frame = replace(
+            frame, evidence=all_of_it.of(mine, _touching(mine, nearer), _touching(mine, further), frame.codes)
+        )
         follow(person, frame, self._motion, self.config.counts, self.scene.ground, self._anybody)
         if person.visible < HIDDEN:
             person.hidden += 1
-        elif person.filled < EMPTY * self.scene.silhouette.mean:
+        elif person.filled < EMPTY * self.scene.silhouette.mean or person.is_another:
             person.unseen += 1
         else:
             person.seen += 1
@@ -215,8 +217,8 @@ class PeopleTracker:
             return True
         if not person.confirmed:
             return person.missing > 1
-        patience = self.config.patience_hidden_s if person.hidden else self.config.patience_s
-        return person.missing > self._frames(patience)
+        waited = person.missing > self._frames(self.config.patience_hidden_s)
+        return waited or person.unseen > self._frames(self.config.patience_s)
 
     def _double(self, picture: Picture) -> set[Person]:
         """Of two who had nearly the same box for too long, the one to give up: who looks less like what is there."""
@@ -227,6 +229,8 @@ class PeopleTracker:
             one, other = self.people[a], self.people[b]
             both = one.confirmed and other.confirmed
             if min(one.doubled, other.doubled) > (self._frames(self.config.doubled_s) if both else 2):
+                if one.is_another != other.is_another:
+                    return {one if one.is_another else other}
                 if one.is_known and other.is_known:
                     return {max(one, other, key=lambda person: person.likeness(picture, person))}
                 return {min(one, other, key=lambda person: (person.confirmed, person.seen))}
@@ -262,6 +266,8 @@ class PeopleTracker:
     def _welcome(self, frame: Frame) -> None:
         """Somebody new for every box that explains foreground which nobody followed does."""
         for person in self.people:
+            if person.is_another:
+                continue
             around = person.body.box.copy()
             around[2:4] *= 1 + 2 * self.config.clear
             frame.evidence.explain(around, share=1.0)
