@@ -67,25 +67,25 @@ def test_of_two_pixels_go_to_whom_they_look_like() -> None:
     """The nearer one's red shirt hides the other from the right to the left; what shows of green is the other's."""
     codes, mask = seen(NEAR, FAR)
     _, near_mask = seen(NEAR)
-    evidence = Evidence(mask, known().silhouette)
+    evidence = Evidence(mask, known().silhouette, codes=codes)
     near, far = (Claim(state_of(walker), appearance_of(walker).colours) for walker in (NEAR, FAR))
-    behind = evidence.of(far, [near], [], codes)
+    behind = evidence.of(far, [near], [])
     own = mask & ~near_mask
     assert own.sum() > 100
     # Head and skin look alike on both, and count as the nearer one's: of the rest nine pixels in ten are told apart.
     assert behind.shown[own].mean() > 0.75 and behind.shown[near_mask].mean() < 0.1
-    before = evidence.of(near, [], [far], codes)
+    before = evidence.of(near, [], [far])
     assert before.share[near_mask].mean() > 0.9 and before.share[own].mean() < 0.35
-    unknown = evidence.of(Claim(far.box), [Claim(near.box)], [], codes)
+    unknown = evidence.of(Claim(far.box), [Claim(near.box)], [])
     assert unknown.shown[own].mean() < behind.shown[own].mean()  # negative control: by the box alone less of them shows
 
 
 def test_evidence_for_one_leaves_that_of_all_alone() -> None:
     codes, mask = seen(NEAR, FAR)
-    evidence = Evidence(mask, known().silhouette)
+    evidence = Evidence(mask, known().silhouette, codes=codes)
     near, far = (Claim(state_of(walker), appearance_of(walker).colours) for walker in (NEAR, FAR))
-    evidence.of(far, [near], [], codes)
-    evidence.of(near, [], [far], codes)
+    evidence.of(far, [near], [])
+    evidence.of(near, [], [far])
     assert (evidence.weights == 1).all() and (evidence.share == mask).all() and evidence.shown.all()
 
 

@@ -60,14 +60,21 @@ class Claim:
 class Evidence:
     """One frame's foreground, as far as those who stand nearer do not explain it already.
 
-    mask : (H, W) bool; share : (H, W) float32, how far it is foreground that may be the person's; weights : (H, W)
-    float32, how far each pixel counts; shown : (H, W) bool, where that is at least half
+    mask : (H, W) bool
+    codes : (H, W) int16 of `colour_codes`, where colours are reckoned with
+    share : (H, W) float32, how far each pixel is foreground that may be the person's
+    weights : (H, W) float32, how far it counts; shown : (H, W) bool, where that is at least half
     """
 
     def __init__(
-        self, mask: Mask, silhouette: Silhouette, config: ForegroundConfig | None = None, hidden: Mask | None = None
+        self,
+        mask: Mask,
+        silhouette: Silhouette,
+        config: ForegroundConfig | None = None,
+        hidden: Mask | None = None,
+        codes: NDArray[np.int16] | None = None,
     ) -> None:
-        self.config = config or ForegroundConfig()
+        self.config, self.codes = config or ForegroundConfig(), codes
         self.mask, self.silhouette = np.ascontiguousarray(mask), silhouette
         self.gain, self.cost = silhouette.ratios(self.config.outside)
         self.share = self.mask.astype(np.float32)
@@ -79,41 +86,38 @@ class Evidence:
         self._open = self.weights.copy()
         self.shown = self.weights > 0
 
-    def of(
-        self, person: Claim, nearer: Sequence[Claim], further: Sequence[Claim], codes: NDArray[np.int16]
-    ) -> Evidence:
+    def of(self, person: Claim, nearer: Sequence[Claim], further: Sequence[Claim]) -> Evidence:
         """As it is for one person, among others whose boxes are nearer and further away.
 
         What looks like a nearer one counts as hidden, and what looks like one further away as seen past the person.
-        codes : (H, W), see `colour_codes`
         """
         view = copy(self)
         view.weights, view.share = self._open.copy(), self.share.copy()
         for other in nearer:
-            view._hide(person, other, codes)
+            view._hide(person, other)
         for other in further:
-            view._see_past(person, other, codes)
+            view._see_past(person, other)
         view.shown = view.weights > 0.5
         return view
 
-    def _hide(self, person: Claim, other: Claim, codes: NDArray[np.int16]) -> None:
+    def _hide(self, person: Claim, other: Claim) -> None:
         """Take off what shows somebody nearer: all of their middle, where it is not known what both look like."""
         core, place = middle(other.box, self.config.core), middle(other.box, 1.0)
-        if person.colours is None or other.colours is None:
+        if self.codes is None or person.colours is None or other.colours is None:
             self.weights[core] = 0
         elif self.mask[place].size:
-            whose = claims(codes, place, (other.box, other.colours), (person.box, person.colours), self.silhouette)
+            whose = claims(self.codes, place, (other.box, other.colours), (person.box, person.colours), self.silhouette)
             self.weights[core] *= self.mask[core]
             self.weights[place] *= np.where(self.mask[place], np.where(whose < HIDES, 1 - whose, 0), 1)
 
-    def _see_past(self, person: Claim, other: Claim, codes: NDArray[np.int16]) -> None:
+    def _see_past(self, person: Claim, other: Claim) -> None:
         """What shows somebody further away is as good as background; or tells less, where looks are not known."""
         core, place = middle(other.box, self.config.core), middle(other.box, 1.0)
-        if person.colours is None or other.colours is None:
+        if self.codes is None or person.colours is None or other.colours is None:
             self.weights[core] *= np.float32(self.config.shared)
         elif self.mask[place].size:
             self.share[place] *= claims(
-                codes, place, (person.box, person.colours), (other.box, other.colours), self.silhouette
+                self.codes, place, (person.box, person.colours), (other.box, other.colours), self.silhouette
             )
 
     def explain(self, state: FloatArray, share: float | None = None) -> None:

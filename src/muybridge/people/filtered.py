@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from muybridge.filters import condensation
 from muybridge.filters.particles import FloatArray
 from muybridge.filters.schedule import exponent_for_survival, powered
 from muybridge.filters.state import Likelihood, State
-from muybridge.people.appearance import colour_codes
 from muybridge.people.box import SPEED_X, BoxMotion, CountConfig, Y, adapted_count
 from muybridge.people.colour_likelihood import ColourConfig, ColourTarget, Picture
 from muybridge.people.contrast_likelihood import ContrastConfig, ContrastTarget
@@ -38,11 +35,6 @@ class Frame:
     picture: Picture
     background: Picture
     evidence: Evidence
-
-    @cached_property
-    def codes(self) -> NDArray[np.int16]:
-        """(H, W) each pixel's joint bin, see `appearance`."""
-        return colour_codes(self.picture)
 
 
 @dataclass(eq=False)

@@ -109,6 +109,9 @@ class Identities:
         """
         picture, number = frame.picture, frame.number
         known = {*people, *(lost for lost in gone if number - lost.sightings[-1].frame <= self._memory)}
+        for lost in gone:
+            if lost not in known:
+                lost.appearance = None  # 128 KB
         self._meetings = {pair: meeting for pair, meeting in self._meetings.items() if pair <= known}
         for a, b in combinations([person for person in people if person.is_known], 2):
             if not (a in clear and b in clear) and gap_between(a.body.box, b.body.box) < self.config.near:
@@ -121,7 +124,7 @@ class Identities:
         found: set[Person] = set()
         for person in people:
             if person in clear and person not in uncertain:
-                person.remember(picture, frame.codes, frame.evidence.mask)
+                person.remember(frame)
                 waiting = [one for one in people if one.missing and one not in found]
                 found |= self._recall(picture, number, person, gone + waiting)
         return found

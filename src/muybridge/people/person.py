@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 from muybridge.filters.particles import FloatArray
 from muybridge.filters.state import Likelihood
 from muybridge.people.appearance import LONGEST, Appearance, AppearanceLikelihood, log_ratios
-from muybridge.people.blobs import Mask
 from muybridge.people.box import HEIGHT, WIDTH, BoxMotion, CountConfig, X, Y
 from muybridge.people.colour_likelihood import ColourConfig, Picture
 from muybridge.people.evidence import Together
@@ -120,12 +119,12 @@ class Person:
         """Whether their look was learnt from enough frames to tell them from others."""
         return self.confirmed and self.looks >= ENOUGH_LOOKS
 
-    def remember(self, picture: Picture, codes: NDArray[np.int16], mask: Mask) -> None:
+    def remember(self, frame: Frame) -> None:
         """Learn what they look like; only while they are clear to see."""
-        box = self.body.box
+        picture, codes, mask, box = frame.picture, frame.evidence.codes, frame.evidence.mask, self.body.box
         if self.appearance is None:
-            self.appearance = Appearance.learn(codes, mask, box)
-        else:
+            self.appearance = None if codes is None else Appearance.learn(codes, mask, box)
+        elif codes is not None:
             self.appearance = self.appearance.updated(codes, mask, box)
             self.usual += (self.alike - self.usual) / min(self.appearance.looks, LONGEST)
         self.look = Look.learn(picture, box, self.colour) if self.look is None else self.look.updated(picture, box)
@@ -153,10 +152,10 @@ def follow(
     if ground is not None:
         cues.append(ground)
     looks = None
-    if person.appearance is not None and anybody is not None:
+    if person.appearance is not None and anybody is not None and evidence.codes is not None:
         scale = APPEARANCE * evidence.config.looks / usual_area(body.box, ground)
         counted = evidence.share * evidence.weights
-        looks = AppearanceLikelihood(frame.codes, counted, log_ratios(person.appearance, anybody), scale)
+        looks = AppearanceLikelihood(evidence.codes, counted, log_ratios(person.appearance, anybody), scale)
         cues.append(looks)
     elif evidence.seen(body.expected)[0] >= TRUST_COLOUR:
         cues.append(colour)

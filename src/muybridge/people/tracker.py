@@ -18,7 +18,7 @@ import numpy as np
 from muybridge.errors import InputError
 from muybridge.evaluation.boxes import overlaps
 from muybridge.filters.particles import FloatArray
-from muybridge.people.appearance import BANDS, anybody
+from muybridge.people.appearance import BANDS, anybody, colour_codes
 from muybridge.people.blobs import BlobConfig, Mask, find_people
 from muybridge.people.box import PRINTED_VARIANCES, BoxMotion, CountConfig, boxes_from_states, states_from_boxes
 from muybridge.people.colour_likelihood import ColourConfig, Picture
@@ -119,8 +119,9 @@ class PeopleTracker:
             raise InputError("picture and mask", expected=f"the scene's {self.scene.background.shape}",
                              got=f"{picture.shape} and {mask.shape}")  # fmt: skip
         hidden = np.ones(mask.shape, bool) if blind else self.scene.occluders
-        evidence = Evidence(mask, self.scene.silhouette, self.config.foreground, hidden)
-        frame = Frame(number, to_luma_chroma(picture), self._background, evidence)
+        colours = to_luma_chroma(picture)
+        evidence = Evidence(mask, self.scene.silhouette, self.config.foreground, hidden, colour_codes(colours))
+        frame = Frame(number, colours, self._background, evidence)
         order = sorted(self.people, key=nearness)
         known = [person.appearance for person in self.people if person.appearance is not None]
         self._anybody = anybody(known) if known else None
@@ -176,9 +177,7 @@ class PeopleTracker:
         """The body, what can be seen of it, the parts; and what the body explains."""
         all_of_it = frame.evidence
         mine = self._claim(person, person.body.expected)
-        frame = replace(
-            frame, evidence=all_of_it.of(mine, _touching(mine, nearer), _touching(mine, further), frame.codes)
-        )
+        frame = replace(frame, evidence=all_of_it.of(mine, _touching(mine, nearer), _touching(mine, further)))
         follow(person, frame, self._motion, self.config.counts, self.scene.ground, self._anybody)
         if person.visible < HIDDEN:
             person.hidden += 1
