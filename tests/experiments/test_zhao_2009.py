@@ -58,7 +58,7 @@ def test_tables_of_made_up_results() -> None:
 
 def test_results_come_back_beside_others(tmp_path: Path) -> None:
     background, speed = BackgroundTrial(SMALL, "kde"), SpeedTrial((8, 8), 1)
-    timed = SpeedResult(("kde",), (9.0,))
+    timed = SpeedResult(("kde",), (9.0,), (12.0,))
     with Store(tmp_path) as store:
         store.append(background, RESULT)
         store.append(speed, timed)
@@ -68,9 +68,9 @@ def test_results_come_back_beside_others(tmp_path: Path) -> None:
 
 def test_speed_is_held_against_mog2() -> None:
     trial = SpeedTrial((320, 240), 1)
-    row = Row(Case("320 x 240", trial), SpeedResult(("spatial", "mog2"), (40.0, 400.0)))
+    row = Row(Case("320 x 240", trial), SpeedResult(("spatial", "mog2"), (40.0, 400.0), (60.0, 500.0)))
     (table,) = report(Outcome((row,), amount_of(True), Path())).tables
-    assert table.rows[0] == ("320 x 240", "spatial", 40.0, 0.1, 1.0)
+    assert table.rows[0] == ("320 x 240", "spatial", 40.0, 60.0, 0.1, 1.0)
 
 
 def test_a_trial_from_pictures_to_kept_masks(tmp_path: Path) -> None:

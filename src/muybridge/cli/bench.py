@@ -18,7 +18,7 @@ def bench(*names: str, out: Path | None = None, seed: int = 1, reporting: Report
     Parameters
     ----------
     names
-        What to measure: likelihood, demc, observation, filters, render; all where none is named.
+        What to measure: likelihood, demc, observation, filters, render, background; all where none is named.
     out
         Also write bench.json into this folder.
     seed
