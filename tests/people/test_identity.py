@@ -2,16 +2,24 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 from made_people import Walker, picture_of
 from muybridge.errors import InputError
+from muybridge.people.appearance import colour_codes
 from muybridge.people.box import states_from_boxes
 from muybridge.people.colour_likelihood import ColourConfig
+from muybridge.people.evidence import Evidence
+from muybridge.people.filtered import Frame
 from muybridge.people.histograms import to_luma_chroma
-from muybridge.people.identity import IdentityConfig, Look, bands_of, exchange, gap_between, take_up
+from muybridge.people.identity import Identities, IdentityConfig, Look, bands_of, exchange, gap_between, take_up
 from muybridge.people.person import Person, Sighting
+from muybridge.people.silhouette import Silhouette
+from muybridge.people.tracks import bridged
 from people.made import EMPTY
 
 
@@ -63,8 +71,37 @@ def test_who_is_taken_up_walked_straight_meanwhile() -> None:
     lost, new = person(1, range(5)), person(7, range(9, 12), x=8)
     take_up(new, lost)
     assert new.identity == 1 and [s.frame for s in new.sightings] == list(range(12))
-    np.testing.assert_allclose([s.box[0] for s in new.sightings[4:10]], np.linspace(4, 17, 6))
+    np.testing.assert_allclose([s.box[0] for s in bridged(new.sightings)[4:10]], np.linspace(4, 17, 6))
     assert [s.seen for s in new.sightings] == [True] * 5 + [False] * 4 + [True] * 3
+
+
+@pytest.mark.parametrize("clothes", [0, 1], ids=["the same", "others"])
+def test_somebody_hidden_may_turn_out_to_be_somebody_new(clothes: int) -> None:
+    """Behind something since frame 10; from frame 14 on somebody stands beside it, clear to see for six looks."""
+    known, seen = Walker((100, 170), (100, 170), 0, 40, 0), Walker((120, 170), (120, 170), 0, 40, clothes)
+
+    def frame_of(walker: Walker, number: int) -> Frame:
+        picture, mask = picture_of([walker], number, EMPTY)
+        colours = to_luma_chroma(picture)
+        evidence = Evidence(mask, Silhouette.flat(), codes=colour_codes(colours))
+        return Frame(number, colours, to_luma_chroma(EMPTY), evidence)
+
+    def somebody(identity: int, walker: Walker, frames: range) -> Person:
+        made = person(identity, frames)
+        made.sightings = [replace(one, box=state_of(walker, 0)) for one in made.sightings]
+        made.last_clear, made.confirmed = None, True
+        made.body = SimpleNamespace(box=state_of(walker, 0))  # type: ignore[assignment]
+        return made
+
+    identities = Identities(IdentityConfig(), 10.0, (320, 240))
+    hidden = somebody(1, known, range(11))
+    for number in range(5, 11):
+        assert not identities.step(frame_of(known, number), [hidden], {hidden}, [])
+    hidden.hidden = 4
+    new = somebody(2, seen, range(14, 15))
+    found = [identities.step(frame_of(seen, number), [hidden, new], {new}, []) for number in range(14, 20)]
+    assert found[:5] == [set()] * 5  # six looks are needed
+    assert (found[5], new.identity) == (({hidden}, 1) if clothes == 0 else (set(), 2))
 
 
 def test_bad_settings_are_one_line() -> None:

@@ -113,7 +113,7 @@ class Identities:
             if lost not in known:
                 lost.appearance = None  # 128 KB
         self._meetings = {pair: meeting for pair, meeting in self._meetings.items() if pair <= known}
-        for a, b in combinations([person for person in people if person.is_known], 2):
+        for a, b in combinations([person for person in people if person.is_known and not person.missing], 2):
             if not (a in clear and b in clear) and gap_between(a.body.box, b.body.box) < self.config.near:
                 self._meet(number, a, b)
         for pair in list(self._meetings):
@@ -210,14 +210,10 @@ def exchange(a: Person, b: Person, frame: int) -> None:
 
 
 def take_up(person: Person, lost: Person) -> None:
-    """The new person is the lost one: same identity, and in the frames between, where a straight walk would lead."""
+    """The new person is the lost one: same identity, and unseen in the frames between, see `tracks.bridged`."""
     person.identity = lost.identity
     last, born = lost.last_clear, person.sightings[0]
     assert last is not None
     before = [sighting for sighting in lost.sightings if sighting.frame <= last.frame]
-    steps = born.frame - last.frame
-    between = [
-        replace(last, frame=last.frame + k, box=last.box + (born.box - last.box) * (k / steps), seen=False)
-        for k in range(1, steps)
-    ]
+    between = [replace(last, frame=frame, seen=False) for frame in range(last.frame + 1, born.frame)]
     person.sightings = before + between + person.sightings
