@@ -13,6 +13,7 @@ import numpy as np
 
 from muybridge.filters.particles import FloatArray
 from muybridge.people.alone import BodyAlone, PartsAlone
+from muybridge.people.blobs import Mask
 from muybridge.people.box import states_from_boxes
 from muybridge.people.colour_likelihood import Picture
 from muybridge.people.evidence import Evidence
@@ -62,6 +63,7 @@ def follow_labelled(
     most: int,
     again: bool = False,
     one_box: bool = False,
+    pillar: Mask | None = None,
 ) -> list[LabelledTrack]:
     """Everybody from the first frame that shows them whole, up to `most` frames or until they leave.
 
@@ -70,6 +72,7 @@ def follow_labelled(
     empty : (H, W, 3) uint8 BGR, the scene without people
     again : start anew at the truth after `most` frames
     one_box : each is one box, instead of parts that are repaired if the rules say so
+    pillar : (H, W) bool, what may stand before people, drawn by hand (5.4.2)
     """
     kind: type[Alone] = BodyAlone if one_box else PartsAlone
     background = to_luma_chroma(empty)
@@ -83,7 +86,7 @@ def follow_labelled(
         for person in [person for person in following if person not in there]:
             done.append(following.pop(person).finished())
         for person, k in there.items():
-            frame = Frame(number, picture, background, _evidence(shot, person))
+            frame = Frame(number, picture, background, _evidence(shot, person, pillar))
             if person in following:
                 one = following[person]
                 one.tracker.step(frame)
@@ -124,10 +127,11 @@ def around(boxes: FloatArray) -> FloatArray:
     return np.concatenate([low, high - low], axis=-1)
 
 
-def _evidence(shot: PeopleShot, person: int) -> Evidence:
-    """The person's own foreground; others, who stand before them or not, say nothing."""
+def _evidence(shot: PeopleShot, person: int, pillar: Mask | None) -> Evidence:
+    """The person's own foreground; others, and a pillar, who stand before them or not, say nothing."""
     own = shot.ids == person
-    return Evidence(own, Silhouette.flat(), hidden=(shot.ids > 0) & ~own)
+    other = shot.ids > 0 if pillar is None else (shot.ids > 0) | pillar
+    return Evidence(own, Silhouette.flat(), hidden=other & ~own)
 
 
 def is_whole(shot: PeopleShot, k: int, size: tuple[int, int]) -> bool:

@@ -107,7 +107,8 @@ class Parts:
 
         trusted : bool
             Whether colours are the person's own; if not, parts go with the body or coast, nothing is learnt, and
-            nothing is repaired (5.4).
+            nothing is repaired (5.4). Colours that know what is hidden are asked nevertheless: a head that can be seen
+            is not to go with a body whose legs cannot.
         """
         expected = self.shares * _sides(body) + _centre(body)
         found = np.array([self._follow(k, expected[k], float(body[3]), frame, trusted) for k in range(len(PARTS))])
@@ -125,7 +126,7 @@ class Parts:
         part = self.filters[index]
         colour = part.target.observe(frame.picture, frame.background, frame.evidence.shown)
         cues: list[Likelihood] = [OnBody(expected, height)] if self.rules.held else []
-        cues += [colour] if trusted else []
+        cues += [colour] if trusted or colour.partial else []
         part.step(self.rng, Together(tuple(cues)) if cues else Unknown(), self.rules.motion, self.rules.counts)
         score = colour.likeness(part.box)
         if trusted:

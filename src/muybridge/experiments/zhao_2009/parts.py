@@ -94,7 +94,7 @@ def _by_parts_alone(clip: PeopleClip, pictures: ClipPictures, detector: FailureD
     """The thesis' tracker."""
     rules = replace(thesis_rules(clip.size, clip.rate), detector=detector)
     rng = np.random.default_rng([clip.seed, 6])
-    for track in follow_labelled(rng, pictures.shots, pictures.empty, rules, most=MOST):
+    for track in follow_labelled(rng, pictures.shots, pictures.empty, rules, most=MOST, pillar=pictures.pillar):
         yield as_boxes(track.states), track.true_parts, track.true_bodies
 
 
@@ -102,7 +102,7 @@ def _by_one_box(clip: PeopleClip, pictures: ClipPictures, detector: FailureDetec
     """The thesis' single whole-body tracker, "the same as that for the body part" (6.3.2)."""
     rng = np.random.default_rng([clip.seed, 6])
     rules = thesis_rules(clip.size, clip.rate)
-    for track in follow_labelled(rng, pictures.shots, pictures.empty, rules, most=MOST, one_box=True):
+    for track in follow_labelled(rng, pictures.shots, pictures.empty, rules, most=MOST, one_box=True, pillar=pictures.pillar):
         yield as_boxes(track.states), track.true_parts, track.true_bodies
 
 
