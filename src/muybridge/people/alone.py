@@ -15,6 +15,7 @@ from muybridge.filters.particles import FloatArray
 from muybridge.people.filtered import Filtered, Frame
 from muybridge.people.part_filters import SPEED_SD, PartRules, Parts, Unknown
 from muybridge.people.person import TRUST_WHOLE
+from muybridge.people.repair import in_sight
 
 
 @dataclass(eq=False)
@@ -22,23 +23,27 @@ class PartsAlone:
     """A person without a body of their own.
 
     body : (6,) centre, size and velocity per frame, as the parts have it
+    size : (2,) width and height when the parts were cut last
     """
 
     parts: Parts
     body: FloatArray
+    size: FloatArray
 
     @classmethod
     def start(cls, rng: np.random.Generator, body: FloatArray, frame: Frame, rules: PartRules) -> PartsAlone | None:
         """Cut a body (>= 4,) that is clear to see; None where that cannot be done."""
         parts = Parts.start(rng, body, frame, rules)
-        return None if parts is None else cls(parts, np.concatenate([body[:4], np.zeros(2)]))
+        return None if parts is None else cls(parts, np.concatenate([body[:4], np.zeros(2)]), body[2:4])
 
     def step(self, frame: Frame) -> FloatArray:
-        """One frame: (3, 5) of the parts, see `Parts.step`."""
+        """One frame: (3, 5) of the parts, see `Parts.follow`; they are mended as soon as the person is in sight."""
         expected = self.body.copy()
         expected[:2] += expected[4:]
-        trusted = frame.evidence.seen(expected)[0] >= TRUST_WHOLE
-        found = self.parts.step(expected, frame, trusted)
+        found = self.parts.follow(expected, frame, frame.evidence.seen(expected)[0] >= TRUST_WHOLE)
+        place = in_sight(np.concatenate([expected[:2], self.size]), frame)
+        if place is not None and self.parts.mend(place, frame).all():
+            self.size = place[2:]
         self.body = body_of(self.parts, expected)
         return found
 

@@ -19,7 +19,7 @@ from muybridge.people.evidence import Together, middle
 from muybridge.people.failure import FailureDetector, History
 from muybridge.people.filtered import Colour, Filtered, Frame
 from muybridge.people.parts import PARTS, PartConfig, decompose
-from muybridge.people.repair import mended
+from muybridge.people.repair import FEWEST, mended
 
 PLACE_SD = 0.08
 """Of the body's height: how far a part is from where it was on the body when cut. With the gait it moves by 0.04, but
@@ -82,6 +82,7 @@ class Parts:
     rules: PartRules
     rng: np.random.Generator
     history: History
+    features: FloatArray | None = None
     repairs: int = 0
 
     @classmethod
@@ -110,16 +111,31 @@ class Parts:
             nothing is repaired (5.4). Colours that know what is hidden are asked nevertheless: a head that can be seen
             is not to go with a body whose legs cannot.
         """
+        found = self.follow(body, frame, trusted)
+        if trusted:
+            failed = self.mend(body, frame)
+            found[failed, :4] = self.states[failed, :4]
+            found[failed, 4] = 1.0  # it is what was just learnt
+        return found
+
+    def follow(self, body: FloatArray, frame: Frame, trusted: bool) -> FloatArray:
+        """The same without repair."""
         expected = self.shares * _sides(body) + _centre(body)
         found = np.array([self._follow(k, expected[k], float(body[3]), frame, trusted) for k in range(len(PARTS))])
-        features = self.history.features(self.states, float(body[3]))
-        if trusted and features is not None and self.rules.detector is not None:
-            failed = self.rules.detector.failed(features)
-            if failed.any():
-                self._repair(failed, body, frame)
-                found[:, :4] = self.states[:, :4]
-                found[failed, 4] = 1.0  # it is what was just learnt
+        self.features = self.history.features(self.states, float(body[3]))
         return found
+
+    def mend(self, body: FloatArray, frame: Frame) -> NDArray[np.bool_]:
+        """5.4, of a body (>= 4,) in sight: (3,) which parts failed and are placed anew.
+
+        One part by the other two; several by the foreground where the body is.
+        """
+        failed = np.zeros(len(PARTS), bool)
+        if self.rules.detector is not None:
+            failed = lost(self.states, self.features, frame, self.rules.detector)
+        if failed.any():
+            self._repair(failed, body, frame)
+        return failed
 
     def _follow(self, index: int, expected: FloatArray, height: float, frame: Frame, trusted: bool) -> FloatArray:
         """(5,) of one part: its filter's step, and what it looks like now."""
@@ -145,6 +161,21 @@ class Parts:
             self.filters[index] = mended(self.filters, index, body, frame, rules.cut, rules.colour)
         self.repairs += 1
         self.history.forget()
+
+
+def lost(
+    states: FloatArray, features: FloatArray | None, frame: Frame, detector: FailureDetector
+) -> NDArray[np.bool_]:
+    """(3,) which parts of somebody in sight failed: none, one or all.
+
+    By what the detector says of their features (36,), None where there are not enough frames, or because a box
+    (3, >= 4) holds hardly any foreground.
+    """
+    seen = np.array([frame.evidence.seen(state) for state in states])
+    failed = seen.prod(axis=1) < FEWEST
+    if features is not None:
+        failed |= detector.failed(features)
+    return failed if failed.sum() < 2 else np.ones(len(PARTS), bool)
 
 
 def cut(body: FloatArray, frame: Frame, config: PartConfig) -> FloatArray | None:

@@ -26,6 +26,8 @@ from muybridge.people.filtered import Colour, Filtered, Frame, learn
 from muybridge.people.parts import PARTS, PartConfig, inner_box
 
 HEAD, TORSO, HIP_LEG = range(len(PARTS))
+AROUND = 0.5  # heights of the body, from its box: where it is looked for
+MOST_OF = 0.6  # of what a person fills: with less in sight they are hidden
 FEWEST = 0.15  # share of a section that must be foreground to say where the part is
 
 
@@ -71,3 +73,14 @@ def in_section(place: FloatArray, before: FloatArray, frame: Frame, cut: PartCon
     if box is None:
         return np.concatenate([place[:2], before[2:SPEED_X]])
     return np.array(box) + (columns.start, rows.start, 0, 0)
+
+
+def in_sight(body: FloatArray, frame: Frame) -> FloatArray | None:
+    """(4,) the foreground around where a body (>= 4,) is expected: centre and size; None while most of it is hidden."""
+    evidence = frame.evidence
+    rows, columns = middle(np.append(body[:2], body[2:4] + 2 * AROUND * body[3]), 1.0)
+    mask = evidence.mask[rows, columns] & evidence.shown[rows, columns]
+    if mask.sum() < MOST_OF * evidence.silhouette.mean * body[2] * body[3]:
+        return None
+    y, x = np.flatnonzero(mask.any(axis=1)) + rows.start, np.flatnonzero(mask.any(axis=0)) + columns.start
+    return np.array([(x[0] + x[-1]) / 2, (y[0] + y[-1]) / 2, x[-1] - x[0] + 1.0, y[-1] - y[0] + 1.0])
