@@ -1,8 +1,9 @@
 """One person followed by colours alone, as the thesis does: by parts, with failure detection and repair, or by one box.
 
-`tracker` follows bodies by the foreground and parts on them. Here the body is where the parts say it is: this is what
-the thesis' experiments measure, and what failure detectors are trained on (Zhao 2009, ch. 4, 5). `BodyAlone` is what
-they are compared with in Fig. 6.15 (d): a single box, followed as a part is.
+`tracker` follows bodies by the foreground and parts on them. Here the body is where the parts say it is, until the
+foreground shows that they are lost: this is what the thesis' experiments measure, and what failure detectors are
+trained on (Zhao 2009, ch. 4, 5). `BodyAlone` is what they are compared with in Fig. 6.15 (d): a single box, followed
+as a part is.
 """
 
 from __future__ import annotations

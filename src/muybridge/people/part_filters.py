@@ -75,6 +75,7 @@ class Parts:
     """The three filters.
 
     shares : (3, 4) float64, centre from the body's and size, as shares of the body's sides
+    features : (36,) float64 or None, what a failure detector is asked about; None where there are not enough frames
     """
 
     filters: list[Filtered]
@@ -126,13 +127,21 @@ class Parts:
         return found
 
     def mend(self, body: FloatArray, frame: Frame) -> NDArray[np.bool_]:
-        """5.4, of a body (>= 4,) in sight: (3,) which parts failed and are placed anew.
+        """5.4, of a body (>= 4,) in sight: (3,) which parts failed and are placed anew; none, one or all.
 
-        One part by the other two; several by the foreground where the body is.
+        One part by the other two; several by the foreground where the body is. Free parts have failed, too, where they
+        hold hardly any foreground; held ones are on the body, and there hair like the wall would be called lost.
         """
         failed = np.zeros(len(PARTS), bool)
-        if self.rules.detector is not None:
-            failed = lost(self.states, self.features, frame, self.rules.detector)
+        detector = self.rules.detector
+        if detector is None:
+            return failed
+        if self.features is not None:
+            failed |= detector.failed(self.features)
+        if not self.rules.held:
+            failed |= [np.prod(frame.evidence.seen(state)) < FEWEST for state in self.states]
+        if failed.sum() > 1:
+            failed[:] = True
         if failed.any():
             self._repair(failed, body, frame)
         return failed
@@ -161,21 +170,6 @@ class Parts:
             self.filters[index] = mended(self.filters, index, body, frame, rules.cut, rules.colour)
         self.repairs += 1
         self.history.forget()
-
-
-def lost(
-    states: FloatArray, features: FloatArray | None, frame: Frame, detector: FailureDetector
-) -> NDArray[np.bool_]:
-    """(3,) which parts of somebody in sight failed: none, one or all.
-
-    By what the detector says of their features (36,), None where there are not enough frames, or because a box
-    (3, >= 4) holds hardly any foreground.
-    """
-    seen = np.array([frame.evidence.seen(state) for state in states])
-    failed = seen.prod(axis=1) < FEWEST
-    if features is not None:
-        failed |= detector.failed(features)
-    return failed if failed.sum() < 2 else np.ones(len(PARTS), bool)
 
 
 def cut(body: FloatArray, frame: Frame, config: PartConfig) -> FloatArray | None:

@@ -15,7 +15,7 @@ import numpy as np
 from muybridge.experiments.experiment import Amount, Case, Outcome, Part, Report
 from muybridge.experiments.statistics import over_seeds
 from muybridge.experiments.tables import Cell, Column, Table
-from muybridge.experiments.zhao_2009.people_clips import ClipPictures, PeopleClip, PeopleTrial, people_clips
+from muybridge.experiments.zhao_2009.people_clips import ClipPictures, PeopleClip, PeopleTrial, hard_clips, people_clips
 from muybridge.people.blobs import BlobConfig
 from muybridge.people.box import states_from_boxes
 from muybridge.people.colour_likelihood import pixel_boxes
@@ -64,6 +64,7 @@ class RateTrial(PeopleTrial):
     """One condition."""
 
     RESULT: ClassVar[type[Any]] = RateResult
+    REVISION: ClassVar[int] = 2
     condition: str = "repair"
 
     def measure(self, pictures: ClipPictures) -> RateResult:
@@ -102,7 +103,9 @@ def _by_one_box(clip: PeopleClip, pictures: ClipPictures, detector: FailureDetec
     """The thesis' single whole-body tracker, "the same as that for the body part" (6.3.2)."""
     rng = np.random.default_rng([clip.seed, 6])
     rules = thesis_rules(clip.size, clip.rate)
-    for track in follow_labelled(rng, pictures.shots, pictures.empty, rules, most=MOST, one_box=True, pillar=pictures.pillar):
+    for track in follow_labelled(
+        rng, pictures.shots, pictures.empty, rules, most=MOST, one_box=True, pillar=pictures.pillar
+    ):
         yield as_boxes(track.states), track.true_parts, track.true_bodies
 
 
@@ -152,12 +155,21 @@ def _rows_of(
 
 def cases_of_rates(scale: Amount) -> Iterator[Case]:
     """Every condition on one clip a seed."""
-    for clip in people_clips(scale.seeds):
+    return _cases(people_clips(scale.seeds))
+
+
+def cases_of_hard_rates(scale: Amount) -> Iterator[Case]:
+    """The same in halls where more is lost."""
+    return _cases(hard_clips(scale.seeds))
+
+
+def _cases(clips: Iterator[PeopleClip]) -> Iterator[Case]:
+    for clip in clips:
         for condition in CONDITIONS:
             yield Case(condition, RateTrial(clip, condition))
 
 
-def report_of_rates(outcome: Outcome) -> Report:
+def report_of_rates(outcome: Outcome, name: str = "tracking-rate", where: str = "") -> Report:
     """At the thesis' frame, and against the frame."""
     from muybridge.plotting.people_curves import plot_rates
     from muybridge.plotting.style import new_figure
@@ -180,8 +192,13 @@ def report_of_rates(outcome: Outcome) -> Report:
         "over seeds.",
         "Ours is not started at the truth: it counts from the first frame in which the parts are followed.",
     )
-    table = Table("tracking-rate", "Parts still right at frame 105 (Fig. 6.15)", columns, tuple(rows), notes)
-    return Report((table,), {"tracking-rate": figure})
+    table = Table(name, f"Parts still right at frame 105{where} (Fig. 6.15)", columns, tuple(rows), notes)
+    return Report((table,), {name: figure})
+
+
+def report_of_hard_rates(outcome: Outcome) -> Report:
+    """The same in halls where more is lost."""
+    return report_of_rates(outcome, "tracking-rate-hard", ", five people and a pillar")
 
 
 def _curve(group: list[Any], target: int) -> np.ndarray:
@@ -278,5 +295,7 @@ def report_of_alarms(outcome: Outcome) -> Report:
 
 
 RATES = Part("rates", "Parts still right, with and without repair (Fig. 6.15)", report_of_rates, cases_of_rates)
+HARD_RATES = Part("hard-rates", "The same where five people and a pillar hide each other", report_of_hard_rates,
+                  cases_of_hard_rates)  # fmt: skip
 ALARMS = Part("alarms", "Boxes mistaken for parts, with and without fitted bins (6.2.3)", report_of_alarms,
               cases_of_alarms)  # fmt: skip
