@@ -45,6 +45,7 @@ TRIALS = [
     BoxTrial(CLIP, "ours", 300),
     BoxTrial(CLIP, "Nummiaro", 100),
     RateTrial(CLIP, "repair"),
+    RateTrial(CLIP, "repair, any region"),
     AlarmTrial(CLIP, True, boxes=20, pictures=2),
 ]
 

@@ -107,6 +107,10 @@ def test_who_is_in_sight() -> None:
     for body in (truth, near):
         np.testing.assert_allclose(in_sight(body, frame), truth)
     assert in_sight(far, frame) is None
+    frame.evidence.mask[100:160, 120:140] = True  # somebody else, 30 px to the right: whoever is nearer
+    np.testing.assert_allclose(in_sight(truth + (14, 0, 0, 0), frame), truth)
+    np.testing.assert_allclose(in_sight(truth + (16, 0, 0, 0), frame), truth + (30, 0, 0, 0))
+    frame.evidence.mask[:, 120:] = False
     fills = frame.evidence.silhouette.mean
     for shown, expected in ((1.2 * MOST_OF * fills, True), (0.8 * MOST_OF * fills, False)):  # of the block's columns
         hidden = np.zeros(EMPTY.shape[:2], bool)

@@ -37,13 +37,17 @@ class PartsAlone:
         parts = Parts.start(rng, body, frame, rules)
         return None if parts is None else cls(parts, np.concatenate([body[:4], np.zeros(2)]), body[2:4])
 
-    def step(self, frame: Frame) -> FloatArray:
-        """One frame: (3, 5) of the parts, see `Parts.follow`; they are mended as soon as the person is in sight."""
+    def step(self, frame: Frame, again: Frame | None = None) -> FloatArray:
+        """One frame: (3, 5) of the parts, see `Parts.follow`; they are mended as soon as the person is in sight.
+
+        again : the frame as those see it who place lost parts anew, where they know less of whose foreground is whose
+        """
         expected = self.body.copy()
         expected[:2] += expected[4:]
         found = self.parts.follow(expected, frame, frame.evidence.seen(expected)[0] >= TRUST_WHOLE)
-        place = in_sight(np.concatenate([expected[:2], self.size]), frame)
-        if place is not None and self.parts.mend(place, frame).all():
+        again = again or frame
+        place = in_sight(np.concatenate([expected[:2], self.size]), again)
+        if place is not None and self.parts.mend(place, again).all():
             self.size = place[2:]
         self.body = body_of(self.parts, expected)
         return found

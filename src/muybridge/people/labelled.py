@@ -7,7 +7,7 @@ at least half of it lies on what it should show.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -64,6 +64,7 @@ def follow_labelled(
     again: bool = False,
     one_box: bool = False,
     pillar: Mask | None = None,
+    known: bool = True,
 ) -> list[LabelledTrack]:
     """Everybody from the first frame that shows them whole, up to `most` frames or until they leave.
 
@@ -73,6 +74,7 @@ def follow_labelled(
     again : start anew at the truth after `most` frames
     one_box : each is one box, instead of parts that are repaired if the rules say so
     pillar : (H, W) bool, what may stand before people, drawn by hand (5.4.2)
+    known : lost parts are placed anew on foreground that is the person's own; else on the nearest, whose it may be
     """
     kind: type[Alone] = BodyAlone if one_box else PartsAlone
     background = to_luma_chroma(empty)
@@ -89,7 +91,10 @@ def follow_labelled(
             frame = Frame(number, picture, background, _evidence(shot, person, pillar))
             if person in following:
                 one = following[person]
-                one.tracker.step(frame)
+                if known or isinstance(one.tracker, BodyAlone):
+                    one.tracker.step(frame)
+                else:
+                    one.tracker.step(frame, replace(frame, evidence=Evidence(shot.mask, Silhouette.flat())))
             elif person in finished or not is_whole(shot, k, size):
                 continue
             else:

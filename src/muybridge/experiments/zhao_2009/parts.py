@@ -6,8 +6,9 @@ whole; the whole body is the box around the parts, or, where it is followed by i
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any, ClassVar
 
 import numpy as np
@@ -28,9 +29,11 @@ from muybridge.people.repair_training import thesis_rules
 from muybridge.people.scene import describe
 from muybridge.people.tracker import PeopleTracker
 
-CONDITIONS = ("one box", "no repair", "repair", "ours", "ours, repair")
+ANY = "repair, any region"
+CONDITIONS = ("one box", "no repair", "repair", ANY, "ours", "ours, repair")
 """A single box a person, which is what the whole body is compared with in Fig. 6.15 (d); the thesis' three parts
-without and with repair; `muybridge people`, which follows bodies too, without and with it."""
+without and with repair, by foreground that is known to be the person's or by the nearest, whose it may be; `muybridge
+people`, which follows bodies too, without and with it."""
 FRAME, NEAR = 105, 5
 """The thesis' frame, and how many frames to either side are averaged."""
 TARGETS = (*PARTS, "whole")
@@ -69,7 +72,7 @@ class RateTrial(PeopleTrial):
 
     def measure(self, pictures: ClipPictures) -> RateResult:
         """Follow everybody by their parts."""
-        repaired = self.condition in ("repair", "ours, repair")
+        repaired = self.condition in ("repair", ANY, "ours, repair")
         detector = detector_named("shipped" if repaired else "none")
         follow = FOLLOW.get(self.condition, _by_parts_alone)
         right: list[list[str]] = [[] for _ in TARGETS]
@@ -91,11 +94,15 @@ Followed = tuple[np.ndarray, np.ndarray, np.ndarray]
 (T, 3, 4), and the true body's (T, 4)."""
 
 
-def _by_parts_alone(clip: PeopleClip, pictures: ClipPictures, detector: FailureDetector | None) -> Iterator[Followed]:
+def _by_parts_alone(
+    clip: PeopleClip, pictures: ClipPictures, detector: FailureDetector | None, known: bool = True
+) -> Iterator[Followed]:
     """The thesis' tracker."""
     rules = replace(thesis_rules(clip.size, clip.rate), detector=detector)
     rng = np.random.default_rng([clip.seed, 6])
-    for track in follow_labelled(rng, pictures.shots, pictures.empty, rules, most=MOST, pillar=pictures.pillar):
+    for track in follow_labelled(
+        rng, pictures.shots, pictures.empty, rules, most=MOST, pillar=pictures.pillar, known=known
+    ):
         yield as_boxes(track.states), track.true_parts, track.true_bodies
 
 
@@ -127,7 +134,13 @@ def _by_people_tracker(
             yield tuple(np.array(column) for column in zip(*rows, strict=True))  # type: ignore[misc]
 
 
-FOLLOW = {"one box": _by_one_box, "ours": _by_people_tracker, "ours, repair": _by_people_tracker}
+Follow = Callable[[PeopleClip, ClipPictures, FailureDetector | None], Iterator[Followed]]
+FOLLOW: Mapping[str, Follow] = {
+    "one box": _by_one_box,
+    ANY: partial(_by_parts_alone, known=False),
+    "ours": _by_people_tracker,
+    "ours, repair": _by_people_tracker,
+}
 """How each condition follows; by parts alone where nothing is said."""
 
 
