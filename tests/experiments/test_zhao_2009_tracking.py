@@ -10,19 +10,21 @@ import numpy as np
 import pytest
 
 from made_people import Walker, empty_scene, shots_of
-from muybridge.experiments.experiment import Amount, Outcome, Row
+from muybridge.experiments.experiment import Amount, Outcome, Part, Row
 from muybridge.experiments.zhao_2009 import EXPERIMENT
 from muybridge.experiments.zhao_2009.parts import (
     ALARMS,
     CONDITIONS,
+    HARD_RATES,
     RATES,
     AlarmResult,
     AlarmTrial,
     RateResult,
     RateTrial,
 )
-from muybridge.experiments.zhao_2009.people_clips import ClipPictures, PeopleClip
+from muybridge.experiments.zhao_2009.people_clips import ClipPictures, PeopleClip, hard_clips, pillar_of
 from muybridge.experiments.zhao_2009.tracking import BOXES, METHODS, PARTICLES, BoxResult, BoxTrial
+from muybridge.synthetic.surveillance import surveillance_scene
 
 EMPTY = empty_scene()
 CLIP = PeopleClip(seed=0, rate=10.0, size=(320, 240))
@@ -43,6 +45,7 @@ TRIALS = [
     BoxTrial(CLIP, "ours", 300),
     BoxTrial(CLIP, "Nummiaro", 100),
     RateTrial(CLIP, "repair"),
+    RateTrial(CLIP, "repair, any region"),
     AlarmTrial(CLIP, True, boxes=20, pictures=2),
 ]
 
@@ -81,16 +84,18 @@ def test_fitted_bins_are_mistaken_less(hall: ClipPictures) -> None:
     assert sum(fitted.mistaken) <= sum(even.mistaken)
 
 
-def test_rates_by_hand(tmp_path: Path) -> None:
+@pytest.mark.parametrize(("part", "name"), [(RATES, "tracking-rate"), (HARD_RATES, "tracking-rate-hard")])
+def test_rates_by_hand(part: Part, name: str, tmp_path: Path) -> None:
     """Two people last until frame 105; of one the head is lost at frame 50. A third left before and is not counted."""
     lost = "1" * 50 + "0" * 70
     texts = (("1" * 120, lost, "0" * 60), *[("1" * 120, "1" * 120, "0" * 60)] * 3)
-    cases = list(RATES.cases(QUICK))
+    cases = list(part.cases(QUICK))
     assert [case.label for case in cases[: len(CONDITIONS)]] == list(CONDITIONS)
-    report = RATES.report(outcome(cases, [RateResult(texts)] * len(cases), tmp_path))
+    report = part.report(outcome(cases, [RateResult(texts)] * len(cases), tmp_path))
     table = report.tables[0]
     assert [cell.mean for cell in table.rows[0][1:5]] == [0.5, 1.0, 1.0, 1.0] and table.rows[0][5] == 4  # two seeds
-    assert table.rows[-1][0] == "thesis, repair" and "tracking-rate" in report.figures
+    assert table.rows[-1][0] == "thesis, repair" and name in report.figures
+    assert table.name == name
 
 
 def test_tables_of_boxes_and_alarms(tmp_path: Path) -> None:
@@ -107,7 +112,7 @@ def test_tables_of_boxes_and_alarms(tmp_path: Path) -> None:
 
 
 def test_the_parts_are_on_the_command_line() -> None:
-    assert {"boxes", "alarms", "rates"} <= {part.name for part in EXPERIMENT.parts}
+    assert {"boxes", "alarms", "rates", "hard-rates"} <= {part.name for part in EXPERIMENT.parts}
 
 
 def test_a_hall_is_kept_and_dropped(tmp_path: Path) -> None:
@@ -120,3 +125,18 @@ def test_a_hall_is_kept_and_dropped(tmp_path: Path) -> None:
     np.testing.assert_array_equal(kept.shots[-1].parts, made.shots[-1].parts)
     clip.drop(tmp_path)
     assert not clip.path(tmp_path).exists()
+
+
+def test_a_pillar_is_drawn_where_it_stands(tmp_path: Path) -> None:
+    """Up its middle, 0.21 m from its sides; not 0.8 m to either side of it."""
+    clip = replace(next(hard_clips(1)), duration=2.0, rate=5.0, people=1, size=(160, 120))
+    scene = surveillance_scene(seed=clip.seed, duration=2.0, rate=5.0, people=1, size=(160, 120), events=("pillar",))
+    mask = pillar_of(scene)
+    up = np.array([[*scene.occluders[-1].place, height] for height in (0.1, 0.7, 1.3, 1.9)])
+    for aside, expected in ((0.0, True), (0.8, False), (-0.8, False)):
+        x, y = np.rint(scene.rig[0].world_to_pixel(up + (0, aside, 0))).astype(int).T
+        inside = (x >= 0) & (x < 160) & (y >= 0) & (y < 120)
+        assert inside.any() and (mask[y[inside], x[inside]] == expected).all()
+    clip.prepare(tmp_path, [])
+    np.testing.assert_array_equal(clip.load(tmp_path).pillar, mask)
+    assert RateTrial(clip, "one box").measure(clip.load(tmp_path)).right[0] == ()

@@ -8,15 +8,28 @@ import numpy as np
 import pytest
 
 from made_people import Walker, part_boxes, picture_of, pole
+from muybridge.people.alone import PartsAlone
 from muybridge.people.box import BoxMotion, CountConfig, states_from_boxes
 from muybridge.people.colour_likelihood import ColourConfig
+from muybridge.people.contrast_likelihood import ContrastConfig
 from muybridge.people.evidence import Evidence
 from muybridge.people.failure import FailureDetector
 from muybridge.people.filtered import Frame
 from muybridge.people.histograms import to_luma_chroma
 from muybridge.people.part_filters import PartRules, Parts
 from muybridge.people.parts import PartConfig
-from muybridge.people.repair import HEAD, HIP_LEG, TORSO, in_section, mended, section, torso_between
+from muybridge.people.repair import (
+    AROUND,
+    HEAD,
+    HIP_LEG,
+    MOST_OF,
+    TORSO,
+    in_section,
+    in_sight,
+    mended,
+    section,
+    torso_between,
+)
 from muybridge.people.silhouette import Silhouette
 from people.made import EMPTY
 from people.test_failure import machine
@@ -82,6 +95,67 @@ def test_a_part_that_was_thrown_away_is_found_again(index: int) -> None:
     assert len(found.state.particles) == sum(len(state.particles) for state in others)  # N_1 + N_2
     np.testing.assert_allclose(found.state.particles[:, 4:], np.concatenate([s.particles[:, 4:] for s in others]))
     assert np.ptp(found.state.particles[:, :4], axis=0).max() == 0
+
+
+def test_who_is_in_sight() -> None:
+    """A full block of 20 x 60: found from anywhere within AROUND, and not where most of it is hidden or further off."""
+    frame = frame_of(0)
+    frame.evidence.mask[:] = False
+    frame.evidence.mask[100:160, 90:110] = True
+    truth = np.array([99.5, 129.5, 20, 60])
+    near, far = truth + (0.4 * 60, -0.4 * 60, 0, 0), truth + (2 * AROUND * 60 + 20, 0, 0, 0)
+    for body in (truth, near):
+        np.testing.assert_allclose(in_sight(body, frame), truth)
+    assert in_sight(far, frame) is None
+    frame.evidence.mask[100:160, 120:140] = True  # somebody else, 30 px to the right: whoever is nearer
+    np.testing.assert_allclose(in_sight(truth + (14, 0, 0, 0), frame), truth)
+    np.testing.assert_allclose(in_sight(truth + (16, 0, 0, 0), frame), truth + (30, 0, 0, 0))
+    frame.evidence.mask[:, 120:] = False
+    fills = frame.evidence.silhouette.mean
+    for shown, expected in ((1.2 * MOST_OF * fills, True), (0.8 * MOST_OF * fills, False)):  # of the block's columns
+        hidden = np.zeros(EMPTY.shape[:2], bool)
+        hidden[:, 90 + round(shown * 20) :] = True
+        behind = Frame(0, frame.picture, frame.background,
+                       Evidence(frame.evidence.mask, Silhouette.flat(), hidden=hidden))  # fmt: skip
+        assert (in_sight(truth, behind) is not None) == expected
+
+
+@pytest.mark.parametrize("repaired", [True, False])
+def test_parts_that_all_went_astray_are_found_by_the_foreground(repaired: bool) -> None:
+    """All moved by 24 px, 0.4 of the height, as one: their arrangement, which machines judge, is as it was.
+
+    Nothing lies there that looks like them; without repair none is on its part, which are 9 to 22 px wide.
+    """
+    never = machine(0, 1e3)
+    rules = replace(RULES, detector=FailureDetector((never,) * 3, never) if repaired else None)
+    one = PartsAlone.start(np.random.default_rng(0), body_of(0), frame_of(0), rules)
+    assert one is not None
+    for part in one.parts.filters:
+        astray = part.state.particles + (-24, 0, 0, 0, 0, 0)
+        part.state = replace(part.state, particles=astray, estimate=part.state.estimate - (24, 0, 0, 0, 0, 0))
+    one.body = one.body - (24, 0, 0, 0, 0, 0)
+    one.step(frame_of(1))
+    off = np.abs(one.states[:, 0] - states_from_boxes(part_boxes(WALKER, 1))[:, 0])
+    assert (off < 5).all() if repaired else (off > 5).all()
+    assert one.parts.repairs == int(repaired)
+
+
+def test_a_part_that_can_be_seen_stays_though_the_body_is_not_trusted() -> None:
+    """The body's box is 10 px off, a third of its width, as beside somebody who crosses; the parts are held to it.
+
+    By colours that know what is hidden they are nearer to the truth than to where the body has them; with everything
+    hidden, they go with the body.
+    """
+    rules = replace(RULES, held=True, colour=ContrastConfig(bands=2))
+    for hidden, with_body in ((None, False), (np.ones(EMPTY.shape[:2], bool), True)):
+        parts = started(rules)
+        for number in range(1, 8):
+            body = body_of(number) + (10, 0, 0, 0, 0, 0)
+            frame = frame_of(number)
+            frame = replace(frame, evidence=Evidence(frame.evidence.mask, Silhouette.flat(), hidden=hidden))
+            parts.step(body, frame, trusted=False)
+        off = parts.states[:, 0] - states_from_boxes(part_boxes(WALKER, 7))[:, 0]
+        assert (off > 5).all() if with_body else (np.abs(off) < 5).all()
 
 
 def test_what_the_detector_says_is_done() -> None:

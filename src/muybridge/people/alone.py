@@ -1,8 +1,9 @@
 """One person followed by colours alone, as the thesis does: by parts, with failure detection and repair, or by one box.
 
-`tracker` follows bodies by the foreground and parts on them. Here the body is where the parts say it is: this is what
-the thesis' experiments measure, and what failure detectors are trained on (Zhao 2009, ch. 4, 5). `BodyAlone` is what
-they are compared with in Fig. 6.15 (d): a single box, followed as a part is.
+`tracker` follows bodies by the foreground and parts on them. Here the body is where the parts say it is, until the
+foreground shows that they are lost: this is what the thesis' experiments measure, and what failure detectors are
+trained on (Zhao 2009, ch. 4, 5). `BodyAlone` is what they are compared with in Fig. 6.15 (d): a single box, followed
+as a part is.
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ from muybridge.filters.particles import FloatArray
 from muybridge.people.filtered import Filtered, Frame
 from muybridge.people.part_filters import SPEED_SD, PartRules, Parts, Unknown
 from muybridge.people.person import TRUST_WHOLE
+from muybridge.people.repair import in_sight
 
 
 @dataclass(eq=False)
@@ -22,23 +24,31 @@ class PartsAlone:
     """A person without a body of their own.
 
     body : (6,) centre, size and velocity per frame, as the parts have it
+    size : (2,) width and height when the parts were cut last
     """
 
     parts: Parts
     body: FloatArray
+    size: FloatArray
 
     @classmethod
     def start(cls, rng: np.random.Generator, body: FloatArray, frame: Frame, rules: PartRules) -> PartsAlone | None:
         """Cut a body (>= 4,) that is clear to see; None where that cannot be done."""
         parts = Parts.start(rng, body, frame, rules)
-        return None if parts is None else cls(parts, np.concatenate([body[:4], np.zeros(2)]))
+        return None if parts is None else cls(parts, np.concatenate([body[:4], np.zeros(2)]), body[2:4])
 
-    def step(self, frame: Frame) -> FloatArray:
-        """One frame: (3, 5) of the parts, see `Parts.step`."""
+    def step(self, frame: Frame, again: Frame | None = None) -> FloatArray:
+        """One frame: (3, 5) of the parts, see `Parts.follow`; they are mended as soon as the person is in sight.
+
+        again : the frame as those see it who place lost parts anew, where they know less of whose foreground is whose
+        """
         expected = self.body.copy()
         expected[:2] += expected[4:]
-        trusted = frame.evidence.seen(expected)[0] >= TRUST_WHOLE
-        found = self.parts.step(expected, frame, trusted)
+        found = self.parts.follow(expected, frame, frame.evidence.seen(expected)[0] >= TRUST_WHOLE)
+        again = again or frame
+        place = in_sight(np.concatenate([expected[:2], self.size]), again)
+        if place is not None and self.parts.mend(place, again).all():
+            self.size = place[2:]
         self.body = body_of(self.parts, expected)
         return found
 

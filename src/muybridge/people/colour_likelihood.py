@@ -21,6 +21,7 @@ Cost: two cumulative maps of the part of the picture that holds all boxes, then 
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -87,6 +88,8 @@ class ColourLikelihood:
     The maps cover the boxes that were asked for first, those of all particles; boxes beyond have them made anew.
     """
 
+    partial: ClassVar[bool] = False
+    """Whether it knows what is hidden, and says nothing about it."""
     target: ColourTarget
     picture: Picture
     background: Picture

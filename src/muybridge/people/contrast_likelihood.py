@@ -29,6 +29,7 @@ Cost: as of `colour_likelihood`, times the number of bands.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -95,6 +96,8 @@ class ContrastTarget:
 class ContrastLikelihood:
     """One frame, seen with one target in mind."""
 
+    partial: ClassVar[bool] = True
+    """Whether it knows what is hidden, and says nothing about it."""
     target: ContrastTarget
     picture: Picture
     background: Picture

@@ -7,12 +7,13 @@ at least half of it lies on what it should show.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from muybridge.filters.particles import FloatArray
 from muybridge.people.alone import BodyAlone, PartsAlone
+from muybridge.people.blobs import Mask
 from muybridge.people.box import states_from_boxes
 from muybridge.people.colour_likelihood import Picture
 from muybridge.people.evidence import Evidence
@@ -62,6 +63,8 @@ def follow_labelled(
     most: int,
     again: bool = False,
     one_box: bool = False,
+    pillar: Mask | None = None,
+    known: bool = True,
 ) -> list[LabelledTrack]:
     """Everybody from the first frame that shows them whole, up to `most` frames or until they leave.
 
@@ -70,6 +73,8 @@ def follow_labelled(
     empty : (H, W, 3) uint8 BGR, the scene without people
     again : start anew at the truth after `most` frames
     one_box : each is one box, instead of parts that are repaired if the rules say so
+    pillar : (H, W) bool, what may stand before people, drawn by hand (5.4.2)
+    known : lost parts are placed anew on foreground that is the person's own; else on the nearest, whose it may be
     """
     kind: type[Alone] = BodyAlone if one_box else PartsAlone
     background = to_luma_chroma(empty)
@@ -83,10 +88,13 @@ def follow_labelled(
         for person in [person for person in following if person not in there]:
             done.append(following.pop(person).finished())
         for person, k in there.items():
-            frame = Frame(number, picture, background, _evidence(shot, person))
+            frame = Frame(number, picture, background, _evidence(shot, person, pillar))
             if person in following:
                 one = following[person]
-                one.tracker.step(frame)
+                if known or isinstance(one.tracker, BodyAlone):
+                    one.tracker.step(frame)
+                else:
+                    one.tracker.step(frame, replace(frame, evidence=Evidence(shot.mask, Silhouette.flat())))
             elif person in finished or not is_whole(shot, k, size):
                 continue
             else:
@@ -124,10 +132,11 @@ def around(boxes: FloatArray) -> FloatArray:
     return np.concatenate([low, high - low], axis=-1)
 
 
-def _evidence(shot: PeopleShot, person: int) -> Evidence:
-    """The person's own foreground; others, who stand before them or not, say nothing."""
+def _evidence(shot: PeopleShot, person: int, pillar: Mask | None) -> Evidence:
+    """The person's own foreground; others, and a pillar, who stand before them or not, say nothing."""
     own = shot.ids == person
-    return Evidence(own, Silhouette.flat(), hidden=(shot.ids > 0) & ~own)
+    other = shot.ids > 0 if pillar is None else (shot.ids > 0) | pillar
+    return Evidence(own, Silhouette.flat(), hidden=other & ~own)
 
 
 def is_whole(shot: PeopleShot, k: int, size: tuple[int, int]) -> bool:

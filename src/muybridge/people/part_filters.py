@@ -19,7 +19,7 @@ from muybridge.people.evidence import Together, middle
 from muybridge.people.failure import FailureDetector, History
 from muybridge.people.filtered import Colour, Filtered, Frame
 from muybridge.people.parts import PARTS, PartConfig, decompose
-from muybridge.people.repair import mended
+from muybridge.people.repair import FEWEST, mended
 
 PLACE_SD = 0.08
 """Of the body's height: how far a part is from where it was on the body when cut. With the gait it moves by 0.04, but
@@ -75,6 +75,7 @@ class Parts:
     """The three filters.
 
     shares : (3, 4) float64, centre from the body's and size, as shares of the body's sides
+    features : (36,) float64 or None, what a failure detector is asked about; None where there are not enough frames
     """
 
     filters: list[Filtered]
@@ -82,6 +83,7 @@ class Parts:
     rules: PartRules
     rng: np.random.Generator
     history: History
+    features: FloatArray | None = None
     repairs: int = 0
 
     @classmethod
@@ -107,25 +109,49 @@ class Parts:
 
         trusted : bool
             Whether colours are the person's own; if not, parts go with the body or coast, nothing is learnt, and
-            nothing is repaired (5.4).
+            nothing is repaired (5.4). Colours that know what is hidden are asked nevertheless: a head that can be seen
+            is not to go with a body whose legs cannot.
         """
+        found = self.follow(body, frame, trusted)
+        if trusted:
+            failed = self.mend(body, frame)
+            found[failed, :4] = self.states[failed, :4]
+            found[failed, 4] = 1.0  # it is what was just learnt
+        return found
+
+    def follow(self, body: FloatArray, frame: Frame, trusted: bool) -> FloatArray:
+        """The same without repair."""
         expected = self.shares * _sides(body) + _centre(body)
         found = np.array([self._follow(k, expected[k], float(body[3]), frame, trusted) for k in range(len(PARTS))])
-        features = self.history.features(self.states, float(body[3]))
-        if trusted and features is not None and self.rules.detector is not None:
-            failed = self.rules.detector.failed(features)
-            if failed.any():
-                self._repair(failed, body, frame)
-                found[:, :4] = self.states[:, :4]
-                found[failed, 4] = 1.0  # it is what was just learnt
+        self.features = self.history.features(self.states, float(body[3]))
         return found
+
+    def mend(self, body: FloatArray, frame: Frame) -> NDArray[np.bool_]:
+        """5.4, of a body (>= 4,) in sight: (3,) which parts failed and are placed anew; none, one or all.
+
+        One part by the other two; several by the foreground where the body is. Free parts have failed, too, where they
+        hold hardly any foreground; held ones are on the body, and there hair like the wall would be called lost.
+        """
+        failed = np.zeros(len(PARTS), bool)
+        detector = self.rules.detector
+        if detector is None:
+            return failed
+        if self.features is not None:
+            failed |= detector.failed(self.features)
+        if not self.rules.held:
+            failed |= [np.prod(frame.evidence.seen(state)) < FEWEST for state in self.states]
+        if failed.sum() > 1:
+            failed[:] = True
+        if failed.any():
+            self._repair(failed, body, frame)
+        return failed
 
     def _follow(self, index: int, expected: FloatArray, height: float, frame: Frame, trusted: bool) -> FloatArray:
         """(5,) of one part: its filter's step, and what it looks like now."""
         part = self.filters[index]
         colour = part.target.observe(frame.picture, frame.background, frame.evidence.shown)
         cues: list[Likelihood] = [OnBody(expected, height)] if self.rules.held else []
-        cues += [colour] if trusted else []
+        cues += [colour] if trusted or colour.partial else []
         part.step(self.rng, Together(tuple(cues)) if cues else Unknown(), self.rules.motion, self.rules.counts)
         score = colour.likeness(part.box)
         if trusted:

@@ -6,10 +6,12 @@ symbol                      name
 {X_T, Y_T, W_T, H_T}        `torso_between`, (5.8)
 R_h, R_l                    `section`: rows above and below the torso
 N_1 + N_2                   particles of the part that was mended
+foreground region           `in_sight`
 ==========================  =========================================
 
 Differences from the paper: "above" and "below" reach as far from the torso's middle as the sections are high that
-bodies are cut into; where there is no foreground, the part is put in the middle of its section, at its size.
+bodies are cut into; where there is no foreground, the part is put in the middle of its section, at its size. Whether
+somebody is hidden is asked of the foreground around where they are expected, not of the boxes: those may be lost.
 """
 
 from __future__ import annotations
@@ -20,12 +22,17 @@ import numpy as np
 
 from muybridge.filters.particles import FloatArray
 from muybridge.filters.state import State
-from muybridge.people.box import SPEED_X
+from muybridge.people.blobs import BlobConfig, find_people
+from muybridge.people.box import SPEED_X, states_from_boxes
 from muybridge.people.evidence import middle
 from muybridge.people.filtered import Colour, Filtered, Frame, learn
 from muybridge.people.parts import PARTS, PartConfig, inner_box
 
 HEAD, TORSO, HIP_LEG = range(len(PARTS))
+AROUND = 0.5  # heights of the body, across and along: how far from where they are expected somebody is looked for
+MOST_OF = 0.4
+"""Of what a person fills in a box of the size that is expected: with less in sight they are hidden. Chosen on ten halls
+with a pillar: whole bodies right at frame 105, with 0.3 and 0.4 95 %, 0.6 91, 0.8 76, and no repair 67."""
 FEWEST = 0.15  # share of a section that must be foreground to say where the part is
 
 
@@ -71,3 +78,19 @@ def in_section(place: FloatArray, before: FloatArray, frame: Frame, cut: PartCon
     if box is None:
         return np.concatenate([place[:2], before[2:SPEED_X]])
     return np.array(box) + (columns.start, rows.start, 0, 0)
+
+
+def in_sight(body: FloatArray, frame: Frame) -> FloatArray | None:
+    """(4,) the region of foreground nearest to where a body (>= 4,) is expected; None where there is none.
+
+    Centre and size; regions are what may be a person (5.1), of at least `MOST_OF` what this one fills.
+    """
+    evidence = frame.evidence
+    smallest = max(1, round(MOST_OF * evidence.silhouette.mean * float(body[2] * body[3])))
+    regions = [blob.box for blob in find_people(evidence.mask & evidence.shown, BlobConfig(smallest=smallest))]
+    if not regions:
+        return None
+    boxes = states_from_boxes(np.array(regions))[:, :SPEED_X]
+    away = np.abs(boxes[:, :2] - body[:2]).max(axis=1)
+    nearest: FloatArray = boxes[away.argmin()]
+    return nearest if away.min() <= AROUND * body[3] else None

@@ -16,7 +16,7 @@ against our numbers.
 
 from muybridge.experiments.experiment import Experiment
 from muybridge.experiments.zhao_2009.conditions import amount_of
-from muybridge.experiments.zhao_2009.parts import ALARMS, RATES
+from muybridge.experiments.zhao_2009.parts import ALARMS, HARD_RATES, RATES
 from muybridge.experiments.zhao_2009.roc import PICTURES, ROC
 from muybridge.experiments.zhao_2009.speed import SPEED
 from muybridge.experiments.zhao_2009.tracking import BOXES
@@ -24,7 +24,7 @@ from muybridge.experiments.zhao_2009.tracking import BOXES
 EXPERIMENT = Experiment(
     "zhao-2009",
     "Zhao (2009), multi-part tracking in surveillance video",
-    (ROC, PICTURES, SPEED, BOXES, ALARMS, RATES),
+    (ROC, PICTURES, SPEED, BOXES, ALARMS, RATES, HARD_RATES),
     scale=amount_of,
 )
 

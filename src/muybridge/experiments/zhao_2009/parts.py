@@ -6,8 +6,9 @@ whole; the whole body is the box around the parts, or, where it is followed by i
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any, ClassVar
 
 import numpy as np
@@ -15,7 +16,7 @@ import numpy as np
 from muybridge.experiments.experiment import Amount, Case, Outcome, Part, Report
 from muybridge.experiments.statistics import over_seeds
 from muybridge.experiments.tables import Cell, Column, Table
-from muybridge.experiments.zhao_2009.people_clips import ClipPictures, PeopleClip, PeopleTrial, people_clips
+from muybridge.experiments.zhao_2009.people_clips import ClipPictures, PeopleClip, PeopleTrial, hard_clips, people_clips
 from muybridge.people.blobs import BlobConfig
 from muybridge.people.box import states_from_boxes
 from muybridge.people.colour_likelihood import pixel_boxes
@@ -28,9 +29,11 @@ from muybridge.people.repair_training import thesis_rules
 from muybridge.people.scene import describe
 from muybridge.people.tracker import PeopleTracker
 
-CONDITIONS = ("one box", "no repair", "repair", "ours", "ours, repair")
+ANY = "repair, any region"
+CONDITIONS = ("one box", "no repair", "repair", ANY, "ours", "ours, repair")
 """A single box a person, which is what the whole body is compared with in Fig. 6.15 (d); the thesis' three parts
-without and with repair; `muybridge people`, which follows bodies too, without and with it."""
+without and with repair, by foreground that is known to be the person's or by the nearest, whose it may be; `muybridge
+people`, which follows bodies too, without and with it."""
 FRAME, NEAR = 105, 5
 """The thesis' frame, and how many frames to either side are averaged."""
 TARGETS = (*PARTS, "whole")
@@ -64,11 +67,12 @@ class RateTrial(PeopleTrial):
     """One condition."""
 
     RESULT: ClassVar[type[Any]] = RateResult
+    REVISION: ClassVar[int] = 2
     condition: str = "repair"
 
     def measure(self, pictures: ClipPictures) -> RateResult:
         """Follow everybody by their parts."""
-        repaired = self.condition in ("repair", "ours, repair")
+        repaired = self.condition in ("repair", ANY, "ours, repair")
         detector = detector_named("shipped" if repaired else "none")
         follow = FOLLOW.get(self.condition, _by_parts_alone)
         right: list[list[str]] = [[] for _ in TARGETS]
@@ -90,11 +94,15 @@ Followed = tuple[np.ndarray, np.ndarray, np.ndarray]
 (T, 3, 4), and the true body's (T, 4)."""
 
 
-def _by_parts_alone(clip: PeopleClip, pictures: ClipPictures, detector: FailureDetector | None) -> Iterator[Followed]:
+def _by_parts_alone(
+    clip: PeopleClip, pictures: ClipPictures, detector: FailureDetector | None, known: bool = True
+) -> Iterator[Followed]:
     """The thesis' tracker."""
     rules = replace(thesis_rules(clip.size, clip.rate), detector=detector)
     rng = np.random.default_rng([clip.seed, 6])
-    for track in follow_labelled(rng, pictures.shots, pictures.empty, rules, most=MOST):
+    for track in follow_labelled(
+        rng, pictures.shots, pictures.empty, rules, most=MOST, pillar=pictures.pillar, known=known
+    ):
         yield as_boxes(track.states), track.true_parts, track.true_bodies
 
 
@@ -102,7 +110,9 @@ def _by_one_box(clip: PeopleClip, pictures: ClipPictures, detector: FailureDetec
     """The thesis' single whole-body tracker, "the same as that for the body part" (6.3.2)."""
     rng = np.random.default_rng([clip.seed, 6])
     rules = thesis_rules(clip.size, clip.rate)
-    for track in follow_labelled(rng, pictures.shots, pictures.empty, rules, most=MOST, one_box=True):
+    for track in follow_labelled(
+        rng, pictures.shots, pictures.empty, rules, most=MOST, one_box=True, pillar=pictures.pillar
+    ):
         yield as_boxes(track.states), track.true_parts, track.true_bodies
 
 
@@ -124,7 +134,13 @@ def _by_people_tracker(
             yield tuple(np.array(column) for column in zip(*rows, strict=True))  # type: ignore[misc]
 
 
-FOLLOW = {"one box": _by_one_box, "ours": _by_people_tracker, "ours, repair": _by_people_tracker}
+Follow = Callable[[PeopleClip, ClipPictures, FailureDetector | None], Iterator[Followed]]
+FOLLOW: Mapping[str, Follow] = {
+    "one box": _by_one_box,
+    ANY: partial(_by_parts_alone, known=False),
+    "ours": _by_people_tracker,
+    "ours, repair": _by_people_tracker,
+}
 """How each condition follows; by parts alone where nothing is said."""
 
 
@@ -152,12 +168,21 @@ def _rows_of(
 
 def cases_of_rates(scale: Amount) -> Iterator[Case]:
     """Every condition on one clip a seed."""
-    for clip in people_clips(scale.seeds):
+    return _cases(people_clips(scale.seeds))
+
+
+def cases_of_hard_rates(scale: Amount) -> Iterator[Case]:
+    """The same in halls where more is lost."""
+    return _cases(hard_clips(scale.seeds))
+
+
+def _cases(clips: Iterator[PeopleClip]) -> Iterator[Case]:
+    for clip in clips:
         for condition in CONDITIONS:
             yield Case(condition, RateTrial(clip, condition))
 
 
-def report_of_rates(outcome: Outcome) -> Report:
+def report_of_rates(outcome: Outcome, name: str = "tracking-rate", where: str = "") -> Report:
     """At the thesis' frame, and against the frame."""
     from muybridge.plotting.people_curves import plot_rates
     from muybridge.plotting.style import new_figure
@@ -180,8 +205,13 @@ def report_of_rates(outcome: Outcome) -> Report:
         "over seeds.",
         "Ours is not started at the truth: it counts from the first frame in which the parts are followed.",
     )
-    table = Table("tracking-rate", "Parts still right at frame 105 (Fig. 6.15)", columns, tuple(rows), notes)
-    return Report((table,), {"tracking-rate": figure})
+    table = Table(name, f"Parts still right at frame 105{where} (Fig. 6.15)", columns, tuple(rows), notes)
+    return Report((table,), {name: figure})
+
+
+def report_of_hard_rates(outcome: Outcome) -> Report:
+    """The same in halls where more is lost."""
+    return report_of_rates(outcome, "tracking-rate-hard", ", five people and a pillar")
 
 
 def _curve(group: list[Any], target: int) -> np.ndarray:
@@ -278,5 +308,7 @@ def report_of_alarms(outcome: Outcome) -> Report:
 
 
 RATES = Part("rates", "Parts still right, with and without repair (Fig. 6.15)", report_of_rates, cases_of_rates)
+HARD_RATES = Part("hard-rates", "The same where five people and a pillar hide each other", report_of_hard_rates,
+                  cases_of_hard_rates)  # fmt: skip
 ALARMS = Part("alarms", "Boxes mistaken for parts, with and without fitted bins (6.2.3)", report_of_alarms,
               cases_of_alarms)  # fmt: skip
