@@ -37,8 +37,8 @@ from muybridge.people.histograms import inside
 from muybridge.people.silhouette import HIGHEST, Silhouette
 
 BANDS = 8
-EVEN = 0.02  # of a band's pixels: any colour, as likely as any other
-BEYOND = 0.1  # how often a person covers a pixel outside the box where he is expected: boxes are off
+EVEN = 0.02  # of a band's pixels: any colour, as likely as any other; 0.1 was alike
+BEYOND = 0.1  # how often a person covers a pixel outside the box where he is expected: boxes are off; 0.03 was worse
 LONGEST = 25  # looks that are remembered: the newest weighs one in so many
 CLEAREST = 2.0  # nats: the most that one pixel's colour says
 KERNEL = np.array([0.25, 0.5, 0.25])
@@ -108,8 +108,9 @@ def _histograms(codes: NDArray[np.int16], mask: Mask, box: FloatArray) -> NDArra
 
 
 def anybody(known: Sequence[Appearance]) -> NDArray[np.float32]:
-    """(CODES,) float32: density of the colours of all these people, whatever the band."""
-    return np.mean([one.colours.mean(axis=0) for one in known], axis=0, dtype=np.float32)
+    """(BANDS, CODES) float32: density of the colours of all these people, the same in every band."""
+    mean = np.mean([one.colours.mean(axis=0) for one in known], axis=0, dtype=np.float32)
+    return np.tile(mean, (BANDS, 1))
 
 
 @dataclass(frozen=True, eq=False)

@@ -2,8 +2,9 @@
 
 With p the share of foreground in a cell of a person's box (`silhouette`) and q outside, the log likelihood ratio of a
 box is the sum over its pixels of log p / q where there is foreground and of log (1 - p) / (1 - q) where there is none.
-What a nearer person or an occluder covers says nothing. Neighbouring pixels tell much the same, so that the sum counts
-as so many independent looks at a whole box.
+What a nearer person or an occluder covers says nothing, and what is seen of people further away is as good as
+background (`appearance` says whose a pixel is). Neighbouring pixels tell much the same, so that the sum counts as so
+many independent looks at a whole box.
 
 Not in Zhao (2009), where the foreground starts and restarts people, and between that they are followed by colour alone.
 """

@@ -22,7 +22,7 @@ from muybridge.people.identity import Look
 from muybridge.people.part_filters import Parts
 
 TRUST_COLOUR = 0.6  # share of the box that must be visible: below, the histogram is of somebody else
-APPEARANCE = 0.5
+APPEARANCE = 0.5  # weight of colours against the foreground: neighbouring pixels have much the same ones; 1 was alike
 UNLIKE, DOUBT = 0.5, 0.25  # share of the usual likeness, and nats a pixel below that: then it is somebody else
 TRUST_WHOLE = 0.8  # to learn what the person looks like
 ENOUGH_LOOKS = 4  # frames

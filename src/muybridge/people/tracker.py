@@ -3,8 +3,9 @@
 From near to far, everybody's filter takes its step and explains the foreground it covers; what is left over may be
 somebody new. Somebody is believed in after some frames, and given up after some without a sight.
 
-Differences from Zhao (2009): nearer is whose feet are lower in the picture, not whose likelihood is higher (5.4.1);
-people are followed by the foreground and by where they may stand as well as by colour.
+Differences from Zhao (2009): nearer is whose feet are lower in the picture, not whose likelihood is higher (5.4.1), and
+of what two cover, pixels go by their colours (`appearance`); people are followed by the foreground and by where they
+may stand as well as by colour.
 
 Cost: of one person and frame, N particles for the body and N for each part, adapted by (4.18).
 """
@@ -14,11 +15,12 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from muybridge.errors import InputError
 from muybridge.evaluation.boxes import overlaps
 from muybridge.filters.particles import FloatArray
-from muybridge.people.appearance import BANDS, anybody, colour_codes
+from muybridge.people.appearance import anybody, colour_codes
 from muybridge.people.blobs import BlobConfig, Mask, find_people
 from muybridge.people.box import PRINTED_VARIANCES, BoxMotion, CountConfig, boxes_from_states, states_from_boxes
 from muybridge.people.colour_likelihood import ColourConfig, Picture
@@ -109,6 +111,7 @@ class PeopleTracker:
         smallest = self.config.smallest
         self._places = None if scene.ground is None else Places.on(scene.ground, scene.size, smallest)
         self._identities = Identities(self.config.identity, frame_rate, scene.size)
+        self._anybody: NDArray[np.float32] | None = None
 
     def step(self, number: int, picture: Picture, mask: Mask, *, blind: bool = False) -> None:
         """One frame: picture (H, W, 3) uint8 BGR and its foreground (H, W) bool; numbers must rise.
@@ -198,9 +201,7 @@ class PeopleTracker:
 
     def _claim(self, person: Person, box: FloatArray) -> Claim:
         """Whose look is not known yet looks like anybody."""
-        if person.appearance is not None:
-            return Claim(box, person.appearance.colours)
-        return Claim(box, None if self._anybody is None else np.tile(self._anybody, (BANDS, 1)))
+        return Claim(box, self._anybody if person.appearance is None else person.appearance.colours)
 
     def _give_up(self, frame: Frame) -> None:
         """Those unseen for too long, those too far away, and one of two who are one."""
