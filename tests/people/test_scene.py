@@ -29,7 +29,9 @@ def test_the_ground_is_found() -> None:
     scene = describe(EMPTY, masks, SMALL)
     assert scene.ground is not None and scene.size == (WIDTH, HEIGHT)
     for feet in (120.0, 160.0, 220.0):
-        assert abs(float(scene.ground.height(feet)) - (OFFSET + SLOPE * feet)) < 2  # edges are whole pixels, both ends
+        # Edges are whole pixels, both ends; and everybody's stature may be off by half a step of those that are tried,
+        # 1.25 % of 75 pixels.
+        assert abs(float(scene.ground.height(feet)) - (OFFSET + SLOPE * feet)) < 3
 
 
 def test_the_silhouette_is_the_drawn_one() -> None:

@@ -31,7 +31,10 @@ FEET_SD = 0.06  # of the height: by how much feet are off
 BELOW, ABOVE = 1.0, 1.5  # nats: the most that one region counts against a line, cut short, or too tall
 STATURES = np.exp(np.linspace(-0.35, 0.35, 29))  # of people's mean height
 STATURE_SD = 0.13  # of its logarithm: adults have 0.05, and there are children
-SLOPES, SLOPE_SD = 0.5, 0.14  # k is how tall people are over how high the camera hangs: about 3 m, over all of a clip
+SLOPES, SLOPE_SD = (
+    0.5,
+    0.1,
+)  # k is how tall people are over how high the camera hangs: about 3 m; weak against many people
 SAME = 3  # pixels: regions whose lower left corners are nearer are one that stands, seen again
 UPRIGHT = (0.15, 0.7)  # width over height of what may be one standing person
 FOLLOWS, BESIDE, ALIKE = 0.3, 0.02, 0.12  # overlap of one region with the next; with any other; logarithm of heights
@@ -123,7 +126,7 @@ class _Regions:
         """Of the line, with the stature that suits everybody best; infinite where people shrink towards the camera."""
         if not 0 <= line[1] < 1:
             return np.inf
-        return float(self.by_person(line).min(axis=1).sum() + ((line[1] - SLOPES) / SLOPE_SD) ** 2)
+        return float(self.by_person(line).min(axis=1).sum() + 0.5 * ((line[1] - SLOPES) / SLOPE_SD) ** 2)
 
     def agreeing(self, offset: float, slope: float) -> NDArray[np.bool_]:
         """(N,) which lie near the line, each by their own stature."""
