@@ -34,7 +34,7 @@ STATURE_SD = 0.13  # of its logarithm: adults have 0.05, and there are children
 SLOPES, SLOPE_SD = (
     0.5,
     0.1,
-)  # k is how tall people are over how high the camera hangs: about 3 m; weak against many people
+)  # k is how tall people are over how high the camera hangs: some 3 m; weak against many
 SAME = 3  # pixels: regions whose lower left corners are nearer are one that stands, seen again
 UPRIGHT = (0.15, 0.7)  # width over height of what may be one standing person
 FOLLOWS, BESIDE, ALIKE = 0.3, 0.02, 0.12  # overlap of one region with the next; with any other; logarithm of heights
