@@ -29,6 +29,22 @@ def test_a_shut_door_is_nobody_after_a_while() -> None:
     assert someone[42:68, 67:78].all() and someone.sum() <= 30 * 15
 
 
+def test_a_thing_stays_known_when_the_scene_is_learnt_anew() -> None:
+    masks, anew = (Masks.train([scene(False)], MaskConfig(rest=10)) for _ in range(2))
+    for _ in range(12):
+        masks.apply(scene(True))
+    assert anew.things is not None and masks.things is not None
+    anew.things.go_on_from(masks.things)
+    assert not anew.apply(scene(True)).any()
+
+
+def test_who_is_in_the_picture_is_not_learnt() -> None:
+    masks = Masks.train([scene(False)])
+    picture = scene(False, coat_at=65)
+    learnt = masks.without_people(picture, masks.apply(picture))
+    np.testing.assert_array_equal(learnt, scene(False))
+
+
 def test_it_stays_where_nothing_may_be_a_thing() -> None:
     masks = Masks.train([scene(False)], MaskConfig(rest=0))
     shown = [masks.apply(scene(True))[WHERE].mean() for _ in range(12)]

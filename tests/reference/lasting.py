@@ -5,7 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 
-def lasting(colours: np.ndarray, step: int, tolerance: int, fewest: int, weight: float, passing: float) -> np.ndarray:
+def lasting(
+    colours: np.ndarray, step: int, tolerance: int, fewest: int, weight: float, passing: float, ended: bool
+) -> np.ndarray:
     """(T,) bool: which of the moments (T, C) are like the best of every `step`-th."""
     best, kept = -2.0, None
     for colour in colours[::step].astype(int):
@@ -15,7 +17,7 @@ def lasting(colours: np.ndarray, step: int, tolerance: int, fewest: int, weight:
         score = -1.0
         if len(like) >= fewest:
             ends = 2 + len(colours) // 20
-            inner = like[1] > ends and like[-2] < len(colours) - 1 - ends
+            inner = like[1] > ends and (not ended or like[-2] < len(colours) - 1 - ends)
             score = (passing if inner else 1.0) * (like[-2] - like[1] + weight * len(like)) / len(colours)
         if score > best:
             best, kept = score, colour

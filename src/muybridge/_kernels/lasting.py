@@ -19,11 +19,11 @@ def is_near(colour, other, tolerance):
 
 
 @kernel
-def lasting_score(colours, moment, tolerance, fewest, weight, passing):
+def lasting_score(colours, moment, tolerance, fewest, weight, passing, ended):
     """Of moments (T, C): how far apart the first and the last like this one are, and how many there are, as shares.
 
     -1 where there are fewer than `fewest`. The first and the last of all may be chance, and are not reckoned with. What
-    was there neither at the beginning nor at the end counts `passing` times as much.
+    was there neither at the beginning nor, if the clip has `ended`, at its end counts `passing` times as much.
     """
     count, before_last, last, second = 0, -1, -1, -1
     for t in range(colours.shape[0]):
@@ -35,12 +35,12 @@ def lasting_score(colours, moment, tolerance, fewest, weight, passing):
     if count < fewest:
         return -1.0
     ends = 2 + colours.shape[0] // 20
-    came_and_went = second > ends and before_last < colours.shape[0] - 1 - ends
+    came_and_went = second > ends and (not ended or before_last < colours.shape[0] - 1 - ends)
     return (passing if came_and_went else 1.0) * (before_last - second + weight * count) / colours.shape[0]
 
 
 @parallel_kernel
-def over_rows_lasting(pixels, step, tolerance, fewest, weight, passing, out):
+def over_rows_lasting(pixels, step, tolerance, fewest, weight, passing, ended, out):
     """Of pixels (H, W, T, C) every `step`-th moment is tried: out (H, W, T) bool, which are like the best of those."""
     for y in numba.prange(pixels.shape[0]):
         for x in range(pixels.shape[1]):
@@ -49,7 +49,7 @@ def over_rows_lasting(pixels, step, tolerance, fewest, weight, passing, out):
             for moment in range(0, colours.shape[0], step):
                 if moment > 0 and is_near(colours[moment], colours[chosen], tolerance):
                     continue  # much the same was tried, and is best so far
-                score = lasting_score(colours, moment, tolerance, fewest, weight, passing)
+                score = lasting_score(colours, moment, tolerance, fewest, weight, passing, ended)
                 if score > best:
                     best, chosen = score, moment
             for t in range(colours.shape[0]):

@@ -2,8 +2,8 @@
 
 A clip can be looked over before anybody is followed; a stream cannot. Its first seconds make the first empty scene;
 moments are kept from then on, and when there are too many every other one is forgotten, so that those that are left
-reach back twice as far. Memory stays the same, and somebody who stands becomes part of the empty scene only where they
-stood for more than half of the time that the moments reach back.
+reach back twice as far. Memory stays the same. Once people are known in a picture, the rest of it is learnt: whoever
+stands stays foreground for as long as they stir (`things`).
 """
 
 from __future__ import annotations
@@ -121,6 +121,8 @@ class SceneLearner:
         """
         assert self._begun is not None, "nothing was seen"
         masks = before[0] if before and self.foreground.model != "plate" else self._trained()
+        if before and masks.things is not None and before[0].things is not None:
+            masks.things.go_on_from(before[0].things)
         scene = describe(masks.empty, self._seen(masks), self.blobs, self.drawn)
         if scene.ground is None and before is not None:
             known = before[1]
@@ -129,7 +131,7 @@ class SceneLearner:
         return masks, scene
 
     def _trained(self) -> Masks:
-        return Masks.train(self._pictures.items, self.foreground)
+        return Masks.train(self._pictures.items, self.foreground, ended=False)
 
     def _seen(self, masks: Masks) -> Sequence[Mask]:
         """Foreground of many moments: as it was seen then, or, with too few of those, of the pictures that are kept."""

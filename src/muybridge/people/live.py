@@ -227,7 +227,7 @@ class _Run:
             flooded = float(mask.mean()) > self.config.watch.share  # that is no foreground, and teaches nothing
             self._tracker.step(number, usual, mask, blind=flooded)
             if not flooded:
-                self._see(at, usual, mask)
+                self._see(at, masks.without_people(usual, mask), mask)
         self.message = f"{len(self._tracker.people)} people"
         second = max(1, round(self._rate))
         behind = max(self.config.learning.settle_s, self.config.tracker.identity.recall_s)

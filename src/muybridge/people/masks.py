@@ -25,6 +25,8 @@ from muybridge.segmentation.plate import PlateBackground
 from muybridge.segmentation.plate_making import keep_touching
 from muybridge.segmentation.shadows import remove_shadows
 
+BORDER = 7  # side of the square, pixels, by which people are grown before the rest of a picture is learnt
+
 
 @dataclass(frozen=True, kw_only=True)
 class MaskConfig:
@@ -60,12 +62,17 @@ class Masks:
     things: Things | None = None  # of a plate: other models learn them themselves
 
     @classmethod
-    def train(cls, pictures: Sequence[NDArray[np.uint8]], config: MaskConfig | None = None) -> Masks:
-        """From pictures (H, W, 3) uint8 BGR in the order of time, far enough apart that people have moved."""
+    def train(
+        cls, pictures: Sequence[NDArray[np.uint8]], config: MaskConfig | None = None, *, ended: bool = True
+    ) -> Masks:
+        """From pictures (H, W, 3) uint8 BGR in the order of time, far enough apart that people have moved.
+
+        ended : whether the last is the end of a clip, see `lasting_picture`
+        """
         config = config or MaskConfig()
         usual = median_picture(pictures)
         pictures = [relit(picture, usual) for picture in pictures]
-        empty = lasting_picture(pictures)
+        empty = lasting_picture(pictures, ended=ended)
         known = {field.name for field in fields(BACKGROUND_MODELS[config.model].config)}
         # Light is taken out of pictures before they come here: a model that does so itself would do it twice.
         wanted: dict[str, Any] = {"threshold": config.threshold, "light": False}
@@ -88,6 +95,13 @@ class Masks:
         faint = self._cleaned(difference > self.config.faint * self.config.threshold, picture, background)
         self.things.learn(picture, faint)
         return keep_touching(faint, self._opened(difference > self.config.threshold))
+
+    def without_people(self, picture: NDArray[np.uint8], mask: Mask) -> NDArray[np.uint8]:
+        """A picture (H, W, 3) that may be learnt: where its foreground (H, W) is, and around, the empty scene."""
+        import cv2
+
+        grown = cv2.dilate(mask.view(np.uint8), np.ones((BORDER, BORDER), np.uint8)).astype(bool)
+        return np.where(grown[..., None], self.empty, picture)
 
     def _cleaned(self, mask: Mask, picture: NDArray[np.uint8], background: NDArray[np.uint8]) -> Mask:
         return self._opened(remove_shadows(mask, picture, background) if self.config.shadows else mask)

@@ -37,6 +37,11 @@ class Things:
         height, width, _ = self._picture.shape
         self._stillness = Stillness((height, width), rest, SMALLEST)
 
+    def go_on_from(self, before: Things) -> None:
+        """Know what was known before the empty scene was learnt anew, and how long everything has been still."""
+        self._known, self._looks, self._stillness = before._known, before._looks, before._stillness
+        self._picture[self._known] = before._picture[self._known]
+
     def compare(self, picture: NDArray[np.uint8]) -> tuple[NDArray[np.float32], NDArray[np.uint8]]:
         """How far a picture is from the background, (H, W), in the plate's units, and the background it is nearest to.
 

@@ -31,13 +31,16 @@ TRIED = 20  # colours a pixel, evenly spread over the moments
 ENOUGH = 8  # moments; of fewer there is only a median
 
 
-def lasting_picture(pictures: Sequence[NDArray[np.uint8]]) -> NDArray[np.uint8]:
-    """(H, W, C) uint8: the median of the moments that show what lasts, from pictures (H, W, C) in the order of time."""
+def lasting_picture(pictures: Sequence[NDArray[np.uint8]], *, ended: bool = True) -> NDArray[np.uint8]:
+    """(H, W, C) uint8: the median of the moments that show what lasts, from pictures (H, W, C) in the order of time.
+
+    ended : whether the last is the end of a clip; in a stream, who came and is still there may go yet
+    """
     if len(pictures) < ENOUGH:
         return median_picture(pictures)
     if len({picture.shape for picture in pictures}) > 1:
         raise InputError("background pictures", expected="one size", got="several sizes")
     pixels = np.stack(pictures, axis=2)
     shown = np.zeros(pixels.shape[:3], np.bool_)
-    over_rows_lasting(pixels, -(-len(pictures) // TRIED), TOLERANCE, FEWEST, OFTEN, PASSING, shown)
+    over_rows_lasting(pixels, -(-len(pictures) // TRIED), TOLERANCE, FEWEST, OFTEN, PASSING, ended, shown)
     return median_picture(pictures, list(np.moveaxis(shown, 2, 0)))
