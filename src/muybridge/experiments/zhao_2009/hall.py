@@ -73,10 +73,10 @@ class HallClip:
         return np.stack([*before, *(shot.image for shot in shots)]), np.stack([shot.mask for shot in shots])
 
 
-def clips(scale: Amount, seeds: int) -> tuple[HallClip, ...]:
-    """Every happening for so many seeds: 16 s at 10 Hz of 160 x 120 for a quick look, else 40 at 15 of 320 x 240."""
+def clips(scale: Amount) -> tuple[HallClip, ...]:
+    """Every happening for every seed: 16 s at 10 Hz of 160 x 120 for a quick look, else 40 at 15 of 320 x 240."""
     seconds, rate, size = (16.0, 10.0, (160, 120)) if scale.quick else (40.0, 15.0, (320, 240))
-    numbers = range(FIRST_SEED, FIRST_SEED + min(seeds, scale.seeds))
+    numbers = range(FIRST_SEED, FIRST_SEED + scale.seeds)
     return tuple(HallClip(scene, seed, seconds, rate, size) for seed in numbers for scene in HAPPENS)
 
 

@@ -14,14 +14,13 @@ from muybridge.plotting.masks import plot_mask_grid, plot_roc
 from muybridge.plotting.style import new_figure
 from muybridge.segmentation import MaskCounts
 
-SEEDS = 3
 FOUND = 0.8
 """True positive rate at which false positives are compared, as in the thesis."""
 
 
 def cases(scale: Amount) -> Iterator[Case]:
     """Every model on every clip."""
-    for clip in clips(scale, SEEDS):
+    for clip in clips(scale):
         for name, label in MODELS.items():
             yield Case(label, BackgroundTrial(clip, name))
 
