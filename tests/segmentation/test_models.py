@@ -14,6 +14,7 @@ from muybridge.segmentation import (
     PlateBackground,
     PlateConfig,
     build_background,
+    settings_at,
 )
 
 HEIGHT, WIDTH = 40, 60
@@ -72,6 +73,14 @@ def test_unknown_names_and_settings_say_what_there_is():
         build_background("plate", [np.zeros((4, 4, 3), np.uint8)], treshold=3)
     with pytest.raises(InputError, match="pictures of the empty scene"):
         build_background("plate")
+
+
+def test_what_counts_pictures_follows_the_rate() -> None:
+    """Defaults are for 30 Hz: 50 and 3600 pictures there, a third at 10 Hz; models that count none have none."""
+    assert settings_at("spatial", 30.0) == {"rest": 50, "patience": 3600}
+    assert settings_at("auto", 10.0) == {"rest": 17, "patience": 1200}
+    assert settings_at("mixture", 10.0) == {}
+    assert settings_at("kde", 0.001)["rest"] == 1  # 0 would mean never
 
 
 @pytest.mark.parametrize("name, settings", [

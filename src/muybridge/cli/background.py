@@ -66,6 +66,7 @@ def background(
 
     build, stream = builder(model, set_ or []), StreamConfig(changed_share=changed_share)
     with open_pictures(video, frame_rate) as pictures:
+        build = builder(model, set_ or [], pictures.frame_rate)
         _check_size(video, pictures.size)
         with reporting.progress("learn") as progress:
             made = _learnt(build, pictures, learn, empty, progress)
@@ -83,14 +84,14 @@ def background(
     reporting.finish({"out": out, "masks": target, "model": model, **record, "restarts": restarts})
 
 
-def builder(model: str, overrides: list[str]) -> Build:
-    """What makes the model of pictures, with its settings checked."""
+def builder(model: str, overrides: list[str], frame_rate: float | None = None) -> Build:
+    """What makes the model of pictures, with its settings checked; what counts pictures suits the rate (Hz)."""
     from muybridge.io import _tables
-    from muybridge.segmentation import BACKGROUND_MODELS, build_background
+    from muybridge.segmentation import BACKGROUND_MODELS, build_background, settings_at
 
     if model not in BACKGROUND_MODELS:
         raise _tables.unknown("--model", model, list(BACKGROUND_MODELS))
-    settings: dict = {}
+    settings: dict = {} if frame_rate is None else settings_at(model, frame_rate)
     for text in overrides:
         _tables.override(settings, text)
     config = _tables.replaced(BACKGROUND_MODELS[model].config(), settings, f"{model} background")

@@ -28,7 +28,13 @@ from muybridge.segmentation.opencv import KnnConfig, Mog2Config, OpenCVBackgroun
 from muybridge.segmentation.pictures import has_colour, median_picture, reduce_image
 from muybridge.segmentation.plate import PlateBackground, PlateConfig
 from muybridge.segmentation.plate_making import make_plate
-from muybridge.segmentation.registry import BACKGROUND_MODELS, BackgroundModel, ScoringModel, build_background
+from muybridge.segmentation.registry import (
+    BACKGROUND_MODELS,
+    BackgroundModel,
+    ScoringModel,
+    build_background,
+    settings_at,
+)
 from muybridge.segmentation.roc import RocCurve
 from muybridge.segmentation.scores import MaskCounts, mask_scores
 from muybridge.segmentation.segmenter import Segmenter, build_segmenter
@@ -75,5 +81,6 @@ __all__ = [
     "near",
     "reduce_image",
     "remove_shadows",
+    "settings_at",
     "shadow_mask",
 ]

@@ -20,6 +20,8 @@ from muybridge.segmentation.pictures import median_picture, thinned
 from muybridge.segmentation.plate import PlateBackground, PlateConfig
 from muybridge.segmentation.spatial import SpatialBackground, SpatialConfig
 
+COUNTS, USUAL_RATE = ("rest", "patience"), 30.0
+"""Settings that count pictures, and the pictures a second that their defaults are for."""
 PLATE_PICTURES = 50
 """A plate is the median of at most so many pictures, spread evenly over those given."""
 
@@ -97,6 +99,13 @@ def build_background(name: str, pictures: Iterable[NDArray] = (), **settings: An
             remedy="give a plate or a clip without the person, or use hue_key before a blue screen",
         )
     return entry.build(rest if first is None else chain([first], rest), config)
+
+
+def settings_at(name: str, frame_rate: float) -> dict[str, Any]:
+    """Those settings of a model that count pictures, at another rate (Hz) than the 30 that their defaults suit."""
+    defaults = BACKGROUND_MODELS[name].config()
+    counts = {key: getattr(defaults, key) for key in COUNTS if hasattr(defaults, key)}
+    return {key: max(1, round(count * frame_rate / USUAL_RATE)) for key, count in counts.items()}
 
 
 def _plate(pictures: Iterable[NDArray]) -> NDArray:

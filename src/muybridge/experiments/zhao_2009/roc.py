@@ -12,7 +12,7 @@ from muybridge.experiments.zhao_2009.hall import HAPPENS, clips
 from muybridge.experiments.zhao_2009.subtraction import MODELS, BackgroundTrial
 from muybridge.plotting.masks import plot_mask_grid, plot_roc
 from muybridge.plotting.style import new_figure
-from muybridge.segmentation import MaskCounts
+from muybridge.segmentation import MaskCounts, settings_at
 
 FOUND = 0.8
 """True positive rate at which false positives are compared, as in the thesis."""
@@ -22,7 +22,7 @@ def cases(scale: Amount) -> Iterator[Case]:
     """Every model on every clip."""
     for clip in clips(scale):
         for name, label in MODELS.items():
-            yield Case(label, BackgroundTrial(clip, name))
+            yield Case(label, BackgroundTrial(clip, name, tuple(settings_at(name, clip.rate).items())))
 
 
 def by_scene(outcome: Outcome) -> dict[str, dict[str, list[Row]]]:
