@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from types import SimpleNamespace
+from typing import cast
 
 import numpy as np
 import pytest
@@ -14,7 +15,7 @@ from muybridge.people.appearance import colour_codes
 from muybridge.people.box import states_from_boxes
 from muybridge.people.colour_likelihood import ColourConfig
 from muybridge.people.evidence import Evidence
-from muybridge.people.filtered import Frame
+from muybridge.people.filtered import Filtered, Frame
 from muybridge.people.histograms import to_luma_chroma
 from muybridge.people.identity import Identities, IdentityConfig, Look, bands_of, exchange, gap_between, take_up
 from muybridge.people.person import Person, Sighting
@@ -90,7 +91,7 @@ def test_somebody_hidden_may_turn_out_to_be_somebody_new(clothes: int) -> None:
         made = person(identity, frames)
         made.sightings = [replace(one, box=state_of(walker, 0)) for one in made.sightings]
         made.last_clear, made.confirmed = None, True
-        made.body = SimpleNamespace(box=state_of(walker, 0))  # type: ignore[assignment]
+        made.body = cast(Filtered, SimpleNamespace(box=state_of(walker, 0)))
         return made
 
     identities = Identities(IdentityConfig(), 10.0, (320, 240))

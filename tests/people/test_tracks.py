@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import cast
 
 import numpy as np
 
 from muybridge.people.colour_likelihood import ColourConfig
+from muybridge.people.filtered import Filtered
 from muybridge.people.person import Person, Sighting
 from muybridge.people.tracks import bridged, gathered
 
@@ -15,6 +17,11 @@ def sighting(frame: int, x: float, seen: bool = True) -> Sighting:
     return Sighting(
         frame, np.array([x, 50.0, 20.0, 60.0, 1.0, 0.0]), 1.0, seen, np.array([[x, 30.0, 8.0, 9.0, 1.0]] * 3)
     )
+
+
+def somebody(sightings: list[Sighting]) -> Person:
+    """Nobody follows them any more: there is no filter."""
+    return Person(7, cast(Filtered, None), np.random.default_rng(0), ColourConfig(), sightings=sightings)
 
 
 WAY = [sighting(0, 10.0), sighting(1, 12.0), sighting(2, 90.0, False), sighting(3, 95.0, False), sighting(5, 20.0)]
@@ -33,13 +40,12 @@ def test_who_was_hidden_walked_straight() -> None:
 
 def test_who_is_not_found_again_stays_where_it_was() -> None:
     assert bridged(WAY[:4])[2:] == WAY[2:4]
-    person = Person(7, None, np.random.default_rng(0), ColourConfig(), sightings=WAY[:4])  # type: ignore[arg-type]
+    person = somebody(WAY[:4])
     np.testing.assert_array_equal(gathered([person]).boxes.frames, [0, 1])  # up to the last sight
 
 
 def test_frames_asked_for_are_bridged_from_before_them() -> None:
-    person = Person(7, None, np.random.default_rng(0), ColourConfig(), sightings=WAY)  # type: ignore[arg-type]
-    boxes = gathered([person], (2, 3)).boxes
+    boxes = gathered([somebody(WAY)], (2, 3)).boxes
     np.testing.assert_array_equal(boxes.frames, [3])
     assert boxes.boxes[0, 0] == 16.0 - 10.0 + 0.5  # half a width to the left, pixel i from i to i + 1
 

@@ -6,10 +6,12 @@
 | `box` | a box's state and motion, how many particles it needs | 4.1, 4.4 |
 | `colour_likelihood` | near the target's colours, far from the background's | 4.2 |
 | `nummiaro` | the likelihood it is compared with | 6.2 |
-| `masks`, `blobs` | the foreground, and regions of one person each | 5.1 |
+| `masks`, `things`, `blobs` | the foreground, what stands in it and is nobody, regions of one person each | 5.1 |
 | `parts`, `part_filters` | head, torso, hip-leg: cut, and followed | 5.2 |
-| `ground`, `silhouette`, `occluders`, `scene` | what the clip tells of the camera before people are followed | ours |
+| `failure`, `repair` | parts that went astray: told, and placed anew | 5.3, 5.4 |
+| `ground`, `ground_fit`, `silhouette`, `occluders`, `scene` | what the clip tells before people are followed | ours |
 | `evidence`, `detect` | what foreground says about boxes, and where somebody new is | ours |
+| `appearance` | what somebody looks like from head to foot, and whose a pixel is | ours |
 | `identity` | who is who after people met | ours |
 | `filtered`, `person`, `tracker` | one box, one person, all of them | ch. 4, 5 |
 | `tracks`, `run` | what comes out; a video from end to end | |
