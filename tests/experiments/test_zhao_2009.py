@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -12,10 +13,10 @@ from muybridge.experiments.harness import experiment
 from muybridge.experiments.store import Store
 from muybridge.experiments.zhao_2009.conditions import amount_of
 from muybridge.experiments.zhao_2009.hall import FIRST_SEED, HAPPENS, HallClip, clips
-from muybridge.experiments.zhao_2009.roc import PICTURES, ROC, report_of_curves
+from muybridge.experiments.zhao_2009.roc import PICTURES, ROC, further, report_of_curves
 from muybridge.experiments.zhao_2009.speed import SpeedResult, SpeedTrial, report
-from muybridge.experiments.zhao_2009.subtraction import MODELS, BackgroundResult, BackgroundTrial
-from muybridge.segmentation import BACKGROUND_MODELS
+from muybridge.experiments.zhao_2009.subtraction import MODELS, BackgroundResult, BackgroundTrial, added, at_rate
+from muybridge.segmentation import BACKGROUND_MODELS, MaskCounts
 
 ZHAO = experiment("zhao-2009")
 RESULT = BackgroundResult((0.2, 0.6, 1.0), (0.0, 0.1, 0.5), 80, 20, 20, 880)
@@ -46,11 +47,40 @@ def test_a_false_rate_between_two_points() -> None:
     assert BackgroundResult((0.4,), (0.2,), 1, 1, 1, 1).false_rate_at(0.7) == pytest.approx(0.6)  # towards (1, 1)
 
 
+def test_what_the_rule_loses_is_told_apart_only_where_pictures_agree() -> None:
+    """30 pictures of 900 pixels of background: 9 more in every one is .01 [.01, .01]; 270 more in a single one is the
+    same mean, and nothing can be said: the circle has draws without that picture, (1 - 6/30)^5 = a third of them."""
+    best, always, once = (
+        replace(RESULT, false_positives=0, true_negatives=27000, false_where_found=found)
+        for found in ((0,) * 30, (9,) * 30, (270,) + (0,) * 29)
+    )
+    apart = further(always, best)
+    assert (apart.low, apart.mean, apart.high) == pytest.approx((0.01, 0.01, 0.01))
+    assert further(once, best).mean == pytest.approx(0.01) and further(once, best).low == 0
+    assert not np.isfinite(further(RESULT, best).mean)
+
+
+def test_the_level_where_enough_is_found_lies_between_two_that_are_known() -> None:
+    """Foreground scores 1 to 100, background 1 to 10 of 1000: 80 are above 20; at levels 5 and 50 95 and 50 are."""
+
+    def counts_at(level: float) -> list[MaskCounts]:
+        found, false = int(np.sum(np.arange(1, 101) > level)), int(np.sum(np.arange(1, 11) > level))
+        return [MaskCounts(found, false, 100 - found, 1000 - false)]
+
+    levels = (5.0, 50.0)
+    curve = [counts_at(level) for level in levels]
+    assert added(at_rate(0.8, levels, curve, counts_at)) == MaskCounts(80, 0, 20, 1000)
+    assert at_rate(0.99, levels, curve, counts_at) == []  # even 5 is too high
+    assert at_rate(0.3, levels, curve, counts_at) == []  # and 50 too low
+
+
 def test_tables_of_made_up_results() -> None:
     scale = amount_of(True, 1)
     rows = tuple(Row(case, RESULT) for case in ROC.cases(scale))
     made = report_of_curves(Outcome(rows, scale, Path()))
-    false, measures = made.tables
+    false, choices, measures = made.tables
+    assert [row[:2] for row in choices.rows] == [(scene, FIRST_SEED) for scene in HAPPENS]
+    assert choices.rows[0][3] == choices.rows[0][4] and not np.isfinite(choices.rows[0][5].low)  # of no pictures
     assert [row[0] for row in false.rows] == list(HAPPENS) and false.rows[0][-1] == 1.0
     assert len(measures.rows) == len(HAPPENS) * len(MODELS)
     np.testing.assert_allclose(measures.rows[0][2:], (0.8, 0.8, 0.8, 4.0, 20 / 900))

@@ -1,4 +1,4 @@
-"""Means with intervals over seeds, and paired differences.
+"""Means with intervals over seeds, paired differences, and means within one clip.
 
 The unit is the seed: it decides scene, noise and the tracker's draws, so that seeds are independent and frames, people
 and motions inside one are not. Trials of one seed are averaged first; the interval is Student's t over those averages.
@@ -14,6 +14,8 @@ import numpy as np
 from muybridge.errors import InputError
 
 LEVEL = 0.95
+RESAMPLES = 2000
+"""A bound of an interval then moves by a tenth of its distance from the mean, or less."""
 
 
 @dataclass(frozen=True)
@@ -57,6 +59,31 @@ def mean_interval(values: Sequence[float] | np.ndarray, level: float = LEVEL) ->
         return Interval(mean, nan, nan, 1)
     reach = float(t.ppf(0.5 + 0.5 * level, len(known) - 1) * known.std(ddof=1) / np.sqrt(len(known)))
     return Interval(mean, mean - reach, mean + reach, len(known))
+
+
+def block_interval(values: Sequence[float] | np.ndarray, block: int, level: float = LEVEL) -> Interval:
+    """Mean and two-sided interval of values (n,) of one clip, in the order of time, neighbours of which are alike.
+
+    Parameters
+    ----------
+    block : values that are drawn together, so many that those further apart are nearly independent
+
+    Notes
+    -----
+    The circular block bootstrap of Politis and Romano (1992): quantiles of the means of `RESAMPLES` clips made of
+    stretches drawn with replacement, the clip's end joined to its beginning. The same values have the same interval.
+    """
+    if block < 1:
+        raise InputError("interval: block", expected="at least 1 value", got=str(block))
+    known = np.asarray(values, dtype=np.float64)
+    count = len(known)
+    if count < 2 * block:
+        mean = float(known.mean()) if count else float("nan")
+        return Interval(mean, float("nan"), float("nan"), count)
+    starts = np.random.default_rng(0).integers(count, size=(RESAMPLES, -(-count // block)))
+    drawn = (starts[..., None] + np.arange(block)).reshape(RESAMPLES, -1)[:, :count] % count
+    low, high = np.quantile(known[drawn].mean(axis=1), [0.5 - 0.5 * level, 0.5 + 0.5 * level])
+    return Interval(float(known.mean()), float(low), float(high), count)
 
 
 def over_seeds(values: Mapping[tuple[int, str], float], level: float = LEVEL) -> Interval:
