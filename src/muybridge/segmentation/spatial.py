@@ -29,7 +29,8 @@ Differences from the paper:
 - What is beside foreground is not learnt either (`FRINGE`).
 - A component counts as background if it is among those that hold `portion` of the weight; `portion=1` takes all.
 - P(c0, ci) = P(c0 | ci) P(ci) blames a pixel for a partner in front of which somebody stands, which widens people by
-  the distance of the partners. -log P(ci) counts up to `partner_limit`; infinity is (3.1) as printed.
+  the distance of the partners, and counts wide shadows twice where a thin limb counts once. -log P(ci) counts up to
+  `partner_limit`; infinity is (3.1) as printed.
 
 Cost: O(M) a pixel to test where it and its partners each show one component clearly, O(K^2 M) at most; O(pairs) to
 learn; mutual information is measured for some rows at each picture.
@@ -70,8 +71,9 @@ class SpatialConfig(ComponentsConfig):
     """beta_c of (3.6), 0..1: the share of the newest picture in the weights of a pair's combinations."""
     partners: int = 2
     """Pairs that a pixel is judged by, 0 to 8 (thesis: 2)."""
-    partner_limit: float = 10.0
-    """Nats against evenly spread colours: the most that a partner's own colour may count; infinite in the thesis."""
+    partner_limit: float = -8.0
+    """Nats against evenly spread colours: the most that a partner's own colour may count; infinite in the thesis. What
+    the background mostly shows counts -8 (noise of 7 grey values) to -12 (`sd_floor`)."""
     threshold: float = 0.0
     """Nats by which evenly spread colours explain a foreground pixel better, at least."""
     patience: int = 3600
