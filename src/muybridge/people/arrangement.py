@@ -40,7 +40,8 @@ DIMENSIONS = 2 * len(PARTS)
 ACROSS = ((24.0, 10.5, -7.5), (10.5, 6.0, -1.5), (-7.5, -1.5, 9.0))
 ALONG = ((18.5, 13.5, 7.5), (13.5, 11.5, 7.5), (7.5, 7.5, 8.0))
 """(3, 3) covariances of how far the true parts are from where their shares of the body's box have them, (heights /
-100)^2; `python benchmarks/people_arrangement.py --learn`. People lean to both sides: nothing between the two."""
+100)^2, in halls 9100 (calm) and 9200 to 9205 (hard): `python benchmarks/people_arrangement.py --learn`. People lean to
+both sides: nothing between the two."""
 COLOUR_SD = 0.02  # heights: where one part's colours fit best is off by itself; 0.015 was alike
 BODY_SD = 0.03  # heights: a body's box that is off takes all three along; 0 and 0.02 were alike, 0.08 was worse
 TRUST = (0.5, 1.0, 0.7)
