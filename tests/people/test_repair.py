@@ -11,7 +11,6 @@ from made_people import Walker, part_boxes, picture_of, pole
 from muybridge.people.alone import PartsAlone
 from muybridge.people.box import BoxMotion, CountConfig, states_from_boxes
 from muybridge.people.colour_likelihood import ColourConfig
-from muybridge.people.contrast_likelihood import ContrastConfig
 from muybridge.people.evidence import Evidence
 from muybridge.people.failure import FailureDetector
 from muybridge.people.filtered import Frame
@@ -35,7 +34,7 @@ from people.made import EMPTY
 from people.test_failure import machine
 
 WALKER = Walker((60, 200), (260, 200), 0, 49)
-RULES = PartRules(BoxMotion.within((320, 240)), CountConfig(), ColourConfig(), PartConfig(), 10.0, held=False)
+RULES = PartRules(BoxMotion.within((320, 240)), CountConfig(), ColourConfig(), PartConfig(), 10.0)
 
 
 def frame_of(number: int, hidden: np.ndarray | None = None) -> Frame:
@@ -140,24 +139,6 @@ def test_parts_that_all_went_astray_are_found_by_the_foreground(repaired: bool) 
     assert one.parts.repairs == int(repaired)
 
 
-def test_a_part_that_can_be_seen_stays_though_the_body_is_not_trusted() -> None:
-    """The body's box is 10 px off, a third of its width, as beside somebody who crosses; the parts are held to it.
-
-    By colours that know what is hidden they are nearer to the truth than to where the body has them; with everything
-    hidden, they go with the body.
-    """
-    rules = replace(RULES, held=True, colour=ContrastConfig(bands=2))
-    for hidden, with_body in ((None, False), (np.ones(EMPTY.shape[:2], bool), True)):
-        parts = started(rules)
-        for number in range(1, 8):
-            body = body_of(number) + (10, 0, 0, 0, 0, 0)
-            frame = frame_of(number)
-            frame = replace(frame, evidence=Evidence(frame.evidence.mask, Silhouette.flat(), hidden=hidden))
-            parts.step(body, frame, trusted=False)
-        off = parts.states[:, 0] - states_from_boxes(part_boxes(WALKER, 7))[:, 0]
-        assert (off > 5).all() if with_body else (np.abs(off) < 5).all()
-
-
 def test_what_the_detector_says_is_done() -> None:
     """One that always calls the head lost, and one that calls everything lost; the same parts without either."""
     always, never = machine(0, -1.0), machine(0, 1e3)
@@ -172,14 +153,13 @@ def test_what_the_detector_says_is_done() -> None:
         assert found.shape == (3, 5) and np.isfinite(found).all()
 
 
-@pytest.mark.parametrize("held", [False, True], ids=["free", "on the body"])
-def test_parts_that_nobody_sees_coast_and_learn_nothing(held: bool) -> None:
+def test_parts_that_nobody_sees_coast_and_learn_nothing() -> None:
     """Behind a pole: what they look like stays to the bit, nothing is repaired, and they go on with the person.
 
-    4 px a frame for 4 frames: 16 px; free ones keep the speed they had, known to 1.4 px a frame and so to 6 px.
+    4 px a frame for 4 frames: 16 px; they keep the speed they had, known to 1.4 px a frame and so to 6 px.
     """
     always = replace(machine(0, -1.0), offset=-10.0)
-    parts = started(replace(RULES, held=held, detector=FailureDetector((always,) * 3, always)))
+    parts = started(replace(RULES, detector=FailureDetector((always,) * 3, always)))
     for number in range(5):
         parts.step(body_of(number), frame_of(number), trusted=True)
     before, looks = parts.states, [part.target.histogram.copy() for part in parts.filters]

@@ -73,7 +73,7 @@ def test_parts_of_the_hidden_one_of_two_learn_nothing() -> None:
     hidden: list[float] = []
     for frame in range(40):
         before = {
-            person: [part.target.histogram for part in person.parts.filters]
+            person: [target.histogram for target in person.parts.targets]
             for person in tracker.people
             if person.parts is not None
         }
@@ -81,7 +81,7 @@ def test_parts_of_the_hidden_one_of_two_learn_nothing() -> None:
         for person, looks in before.items():
             if person.parts is None:
                 continue
-            same = [np.array_equal(a, part.target.histogram) for a, part in zip(looks, person.parts.filters)]
+            same = [np.array_equal(a, target.histogram) for a, target in zip(looks, person.parts.targets)]
             assert all(same) if person.visible < 0.8 else not all(same)
             if person.visible < 0.8:
                 hidden.append(person.body.box[1] + person.body.box[3] / 2)

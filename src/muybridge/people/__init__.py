@@ -7,7 +7,8 @@
 | `colour_likelihood` | near the target's colours, far from the background's | 4.2 |
 | `nummiaro` | the likelihood it is compared with | 6.2 |
 | `masks`, `things`, `blobs` | the foreground, what stands in it and is nobody, regions of one person each | 5.1 |
-| `parts`, `part_filters` | head, torso, hip-leg: cut, and followed | 5.2 |
+| `parts`, `part_filters` | head, torso, hip-leg: cut, and followed one by one | 5.2 |
+| `arrangement` | the three as one state on the body | ch. 7 |
 | `failure`, `repair` | parts that went astray: told, and placed anew | 5.3, 5.4 |
 | `ground`, `ground_fit`, `silhouette`, `occluders`, `scene` | what the clip tells before people are followed | ours |
 | `evidence`, `detect` | what foreground says about boxes, and where somebody new is | ours |

@@ -75,9 +75,13 @@ class Filtered:
     def step(self, rng: np.random.Generator, likelihood: Likelihood, motion: BoxMotion, counts: CountConfig) -> None:
         """One frame, with as many particles as the last weights ask for (4.18)."""
         config = replace(FILTER, particles=adapted_count(self.state.log_weights, counts))
-        exponent = exponent_for_survival(self.state.log_weights, SURVIVAL, highest=1.0)
-        selecting = replace(self.state, log_weights=powered(self.state.log_weights, exponent))
-        self.state, _ = condensation.step(rng, selecting, likelihood, motion, config)
+        self.state, _ = condensation.step(rng, flattened(self.state), likelihood, motion, config)
+
+
+def flattened(state: State) -> State:
+    """With weights so even that `SURVIVAL` of the particles go on."""
+    exponent = exponent_for_survival(state.log_weights, SURVIVAL, highest=1.0)
+    return replace(state, log_weights=powered(state.log_weights, exponent))
 
 
 def learn(picture: Picture, box: FloatArray, colour: Colour) -> Target:

@@ -1,7 +1,6 @@
-"""Head, torso and hip-leg, each followed by its own colour filter (Zhao 2009, ch. 4 and 5).
+"""Head, torso and hip-leg, each followed by its own colour filter, and repaired (Zhao 2009, ch. 4 and 5).
 
-Differences from the paper: each part is expected where it was on the body when the parts were cut (`held`), so that one
-that loses its colours stays on the body; the paper lets them go and repairs them afterwards (5.3, 5.4).
+They know nothing of each other until one is lost; `arrangement` has them as one state.
 """
 
 from __future__ import annotations
@@ -12,35 +11,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from muybridge.filters.particles import FloatArray
-from muybridge.filters.state import Likelihood
 from muybridge.people.blobs import Blob
 from muybridge.people.box import BoxMotion, CountConfig
-from muybridge.people.evidence import Together, middle
+from muybridge.people.evidence import middle
 from muybridge.people.failure import FailureDetector, History
 from muybridge.people.filtered import Colour, Filtered, Frame
 from muybridge.people.parts import PARTS, PartConfig, decompose
 from muybridge.people.repair import FEWEST, mended
 
-PLACE_SD = 0.08
-"""Of the body's height: how far a part is from where it was on the body when cut. With the gait it moves by 0.04, but
-the body's box is itself off by up to 0.2 where hair is like the wall or somebody crosses. Heads still right at frame
-105, clips 9100 to 9107: 0.05 or 0.06 89 %, 0.08 93, 0.12 89, where hip-legs slide down legs of one colour too."""
-SIZE_SD = 0.15  # of its own size
 SPEED_SD = 0.04  # of the body's height per frame, at the start
-
-
-@dataclass(frozen=True, eq=False)
-class OnBody:
-    """Where on a body a part is expected: its box (4,) there, and the body's height, pixels."""
-
-    part: FloatArray
-    height: float
-
-    def log_prob(self, states: FloatArray) -> FloatArray:
-        """(N,) of a part's boxes (N, >= 4), up to a constant."""
-        place = (states[:, :2] - self.part[:2]) / (PLACE_SD * self.height)
-        size = (states[:, 2:4] / self.part[2:4] - 1) / SIZE_SD
-        return -0.5 * (np.square(place).sum(axis=1) + np.square(size).sum(axis=1))
 
 
 class Unknown:
@@ -55,10 +34,8 @@ class Unknown:
 class PartRules:
     """How parts are cut, followed and repaired; the same for everybody.
 
-    held : bool
-        Whether they are expected on the body, or go where their colours are.
     detector : FailureDetector or None
-        What says that one must be repaired; None: nothing is.
+        What says that one of those that go where their colours are must be repaired; None: nothing is.
     """
 
     motion: BoxMotion
@@ -66,7 +43,6 @@ class PartRules:
     colour: Colour
     cut: PartConfig
     frame_rate: float
-    held: bool = True
     detector: FailureDetector | None = None
 
 
@@ -108,9 +84,8 @@ class Parts:
         """One frame: (3, 5) centre, size and score of the parts of a body (>= 4,).
 
         trusted : bool
-            Whether colours are the person's own; if not, parts go with the body or coast, nothing is learnt, and
-            nothing is repaired (5.4). Colours that know what is hidden are asked nevertheless: a head that can be seen
-            is not to go with a body whose legs cannot.
+            Whether colours are the person's own; if not, parts coast, nothing is learnt, and nothing is repaired (5.4).
+            Colours that know what is hidden are asked nevertheless.
         """
         found = self.follow(body, frame, trusted)
         if trusted:
@@ -121,16 +96,15 @@ class Parts:
 
     def follow(self, body: FloatArray, frame: Frame, trusted: bool) -> FloatArray:
         """The same without repair."""
-        expected = self.shares * _sides(body) + _centre(body)
-        found = np.array([self._follow(k, expected[k], float(body[3]), frame, trusted) for k in range(len(PARTS))])
+        found = np.array([self._follow(k, frame, trusted) for k in range(len(PARTS))])
         self.features = self.history.features(self.states, float(body[3]))
         return found
 
     def mend(self, body: FloatArray, frame: Frame) -> NDArray[np.bool_]:
         """5.4, of a body (>= 4,) in sight: (3,) which parts failed and are placed anew; none, one or all.
 
-        One part by the other two; several by the foreground where the body is. Free parts have failed, too, where they
-        hold hardly any foreground; held ones are on the body, and there hair like the wall would be called lost.
+        One part by the other two; several by the foreground where the body is. Parts have failed, too, where they hold
+        hardly any foreground.
         """
         failed = np.zeros(len(PARTS), bool)
         detector = self.rules.detector
@@ -138,21 +112,19 @@ class Parts:
             return failed
         if self.features is not None:
             failed |= detector.failed(self.features)
-        if not self.rules.held:
-            failed |= [np.prod(frame.evidence.seen(state)) < FEWEST for state in self.states]
+        failed |= [np.prod(frame.evidence.seen(state)) < FEWEST for state in self.states]
         if failed.sum() > 1:
             failed[:] = True
         if failed.any():
             self._repair(failed, body, frame)
         return failed
 
-    def _follow(self, index: int, expected: FloatArray, height: float, frame: Frame, trusted: bool) -> FloatArray:
+    def _follow(self, index: int, frame: Frame, trusted: bool) -> FloatArray:
         """(5,) of one part: its filter's step, and what it looks like now."""
         part = self.filters[index]
         colour = part.target.observe(frame.picture, frame.background, frame.evidence.shown)
-        cues: list[Likelihood] = [OnBody(expected, height)] if self.rules.held else []
-        cues += [colour] if trusted or colour.partial else []
-        part.step(self.rng, Together(tuple(cues)) if cues else Unknown(), self.rules.motion, self.rules.counts)
+        seen = colour if trusted or colour.partial else Unknown()
+        part.step(self.rng, seen, self.rules.motion, self.rules.counts)
         score = colour.likeness(part.box)
         if trusted:
             part.target = part.target.updated(colour.histogram(part.box))
@@ -182,6 +154,11 @@ def cut(body: FloatArray, frame: Frame, config: PartConfig) -> FloatArray | None
 def shares_of(boxes: FloatArray, body: FloatArray) -> FloatArray:
     """(3, 4) where boxes (3, >= 4) are on a body (>= 4,): from its centre, and their size, as shares of its sides."""
     return (boxes[:, :4] - _centre(body)) / _sides(body)
+
+
+def boxes_of(shares: FloatArray, body: FloatArray) -> FloatArray:
+    """(3, 4) the inverse: where parts with these shares (3, 4) are on a body (>= 4,)."""
+    return shares * _sides(body) + _centre(body)
 
 
 def _filters(

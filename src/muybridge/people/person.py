@@ -1,4 +1,4 @@
-"""One person: a particle filter over the body's box, three over its parts, and what the person looks like.
+"""One person: a particle filter over the body's box, one over how its parts lie on it, and what the person looks like.
 
 Every frame: foreground, colour and the ground say how likely each particle is; `filters.condensation` does the rest.
 """
@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from muybridge.filters.particles import FloatArray
 from muybridge.filters.state import Likelihood
 from muybridge.people.appearance import LONGEST, Appearance, AppearanceLikelihood, log_ratios
+from muybridge.people.arrangement import Arrangement
 from muybridge.people.box import HEIGHT, WIDTH, BoxMotion, CountConfig, X, Y
 from muybridge.people.colour_likelihood import ColourConfig, Picture
 from muybridge.people.evidence import Together
@@ -87,7 +88,7 @@ class Person:
     stature: float = 1.0
     breadth: float = 1.0
     last_clear: Sighting | None = None
-    parts: Parts | None = None
+    parts: Arrangement | Parts | None = None
 
     def measure(self, outline: FloatArray, ground: GroundScale, rate: float) -> None:
         """Learn how tall and how broad they are from the box of their foreground (4,), where it agrees with their own.

@@ -76,7 +76,7 @@ class RepairTraining:
 def thesis_rules(size: tuple[int, int], frame_rate: float, spread: float = ColourConfig().spread) -> PartRules:
     """The thesis' tracker in pictures (width, height): parts go where their colours are, and nothing is repaired."""
     colour = ColourConfig(spread=spread)
-    return PartRules(BoxMotion.within(size), CountConfig(), colour, PartConfig(), frame_rate, held=False)
+    return PartRules(BoxMotion.within(size), CountConfig(), colour, PartConfig(), frame_rate)
 
 
 @dataclass(frozen=True, eq=False)

@@ -58,7 +58,7 @@ class PeopleConfig:
 
     masks: MaskConfig = MaskConfig()
     tracker: TrackerConfig = TrackerConfig()
-    repair: str = "shipped"  # what says that a part was lost: "shipped", "none", or a file that `train-repair` wrote
+    repair: str = "shipped"  # what says that a part not held was lost: "shipped", "none", a file of `train-repair`
     rows: int = 720  # pictures with more are worked on reduced to so many
     moments: int = 200  # of the clip that are looked at beforehand
     plate_moments: int = 60  # of those, for the median that is the empty scene

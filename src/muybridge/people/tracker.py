@@ -7,7 +7,7 @@ Differences from Zhao (2009): nearer is whose feet are lower in the picture, not
 of what two cover, pixels go by their colours (`appearance`); people are followed by the foreground and by where they
 may stand as well as by colour.
 
-Cost: of one person and frame, N particles for the body and N for each part, adapted by (4.18).
+Cost: of one person and frame, N particles for the body and N for its parts, each adapted by (4.18).
 """
 
 from __future__ import annotations
@@ -21,6 +21,7 @@ from muybridge.errors import InputError
 from muybridge.evaluation.boxes import overlaps
 from muybridge.filters.particles import FloatArray
 from muybridge.people.appearance import anybody, colour_codes
+from muybridge.people.arrangement import Arrangement
 from muybridge.people.blobs import BlobConfig, Mask, find_people
 from muybridge.people.box import PRINTED_VARIANCES, BoxMotion, CountConfig, boxes_from_states, states_from_boxes
 from muybridge.people.colour_likelihood import ColourConfig, Picture
@@ -56,7 +57,7 @@ class TrackerConfig:
     foreground: ForegroundConfig = ForegroundConfig()
     identity: IdentityConfig = IdentityConfig()
     parts: PartConfig = PartConfig()
-    held: bool = True  # parts are expected on the body; false: they go where their colours are, as in the paper
+    held: bool = True  # parts are one state on the body; false: each goes where its colours are, as in the paper
     counts: CountConfig = CountConfig()
     blobs: BlobConfig = BlobConfig()  # where the ground's scale is not known
     variances: tuple[float, ...] = PRINTED_VARIANCES  # px^2 a frame, (4.3)
@@ -87,7 +88,7 @@ class PeopleTracker:
     frame_rate : float, frames per second
     seed : int
     detector : FailureDetector, optional
-        What says that a part must be repaired; nothing is where absent.
+        What says that a part that is not held must be repaired; nothing is where absent.
     """
 
     def __init__(
@@ -106,7 +107,7 @@ class PeopleTracker:
         self._rate, self._count, self._settled = frame_rate, 0, -1
         self._motion = BoxMotion.within(scene.size, self.config.variances)
         self._rules = PartRules(self._motion, self.config.counts, self.config.part_colour, self.config.parts,
-                                frame_rate, self.config.held, detector)  # fmt: skip
+                                frame_rate, detector)  # fmt: skip
         self._background = to_luma_chroma(scene.background)
         smallest = self.config.smallest
         self._places = None if scene.ground is None else Places.on(scene.ground, scene.size, smallest)
@@ -250,7 +251,8 @@ class PeopleTracker:
             self._measure(clear, frame.evidence, self.scene.ground)
         for person in self.people:
             if person in clear and person.parts is None:
-                person.parts = Parts.start(person.rng, person.body.box, frame, self._rules)
+                kind = Arrangement if self.config.held else Parts
+                person.parts = kind.start(person.rng, person.body.box, frame, self._rules)
 
     def _measure(self, clear: set[Person], evidence: Evidence, ground: GroundScale) -> None:
         """How tall and how broad those who are clear to see are."""

@@ -30,10 +30,11 @@ from muybridge.people.scene import describe
 from muybridge.people.tracker import PeopleTracker
 
 ANY = "repair, any region"
-CONDITIONS = ("one box", "no repair", "repair", ANY, "ours", "ours, repair")
+OURS = "ours, one state"
+CONDITIONS = ("one box", "no repair", "repair", ANY, OURS)
 """A single box a person, which is what the whole body is compared with in Fig. 6.15 (d); the thesis' three parts
 without and with repair, by foreground that is known to be the person's or by the nearest, whose it may be; `muybridge
-people`, which follows bodies too, without and with it."""
+people`, which follows bodies too, and on each its three parts as one state."""
 FRAME, NEAR = 105, 5
 """The thesis' frame, and how many frames to either side are averaged."""
 TARGETS = (*PARTS, "whole")
@@ -72,7 +73,7 @@ class RateTrial(PeopleTrial):
 
     def measure(self, pictures: ClipPictures) -> RateResult:
         """Follow everybody by their parts."""
-        repaired = self.condition in ("repair", ANY, "ours, repair")
+        repaired = self.condition in ("repair", ANY)
         detector = detector_named("shipped" if repaired else "none")
         follow = FOLLOW.get(self.condition, _by_parts_alone)
         right: list[list[str]] = [[] for _ in TARGETS]
@@ -123,7 +124,7 @@ def _by_people_tracker(
     masks = Masks.train([pictures.empty])
     found = [masks.apply(shot.image) for shot in pictures.shots]
     scene = describe(pictures.empty, found[::4], BlobConfig(smallest=LEAST_PIXELS))
-    tracker = PeopleTracker(scene, frame_rate=clip.rate, seed=clip.seed, detector=detector)
+    tracker = PeopleTracker(scene, frame_rate=clip.rate, seed=clip.seed)
     for number, (shot, mask) in enumerate(zip(pictures.shots, found, strict=True)):
         tracker.step(number, shot.image, mask)
     parts = tracker.tracks().parts
@@ -138,8 +139,7 @@ Follow = Callable[[PeopleClip, ClipPictures, FailureDetector | None], Iterator[F
 FOLLOW: Mapping[str, Follow] = {
     "one box": _by_one_box,
     ANY: partial(_by_parts_alone, known=False),
-    "ours": _by_people_tracker,
-    "ours, repair": _by_people_tracker,
+    OURS: _by_people_tracker,
 }
 """How each condition follows; by parts alone where nothing is said."""
 
