@@ -58,7 +58,7 @@ class TrackerConfig:
     foreground: ForegroundConfig = ForegroundConfig()
     identity: IdentityConfig = IdentityConfig()
     parts: PartConfig = PartConfig()
-    down: bool = True  # whether boxes leave the size of a standing person where the foreground is clearly lower
+    down: bool = False  # whether boxes leave the size of a standing person where the foreground is clearly lower
     held: bool = True  # parts are expected on the body; false: they go where their colours are, as in the paper
     counts: CountConfig = CountConfig()
     blobs: BlobConfig = BlobConfig()  # where the ground's scale is not known
