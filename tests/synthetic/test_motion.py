@@ -16,7 +16,13 @@ FIGURE = load_figure("man")
 #: Metres per second and per second squared that joints stay below. A walk's hand is slower than 4 m/s, and what stands
 #: or steps is gentler than 6 g. The foot of a jog swings at three times the body's 2 m/s. A landing pushes the pelvis
 #: with 2.1 g (half in the air: pi / 2 * 2 g - g) and bends the knee out of line by as much again and more.
-LIMITS = dict.fromkeys(KINDS, (4.0, 60.0)) | {"jog": (7.0, 90.0), "hop": (4.0, 90.0), "jump": (4.0, 90.0)}
+#: The head of who falls like a rod, of height h, comes down at sqrt(3 g h) = 7.3 m/s.
+LIMITS = dict.fromkeys(KINDS, (4.0, 60.0)) | {
+    "jog": (7.0, 90.0),
+    "hop": (4.0, 90.0),
+    "jump": (4.0, 90.0),
+    "lie": (7.3, 60.0),
+}
 FLYING = ("jog", "hop", "jump")
 
 
@@ -149,7 +155,7 @@ class TestFlight:
         assert alone.mean() > {"jog": 0.05, "hop": 0.25, "jump": 0.25}[kind]
         np.testing.assert_allclose(falls[alone], -9.81, atol=1e-6)
 
-    @pytest.mark.parametrize("kind", [kind for kind in KINDS if kind not in FLYING])
+    @pytest.mark.parametrize("kind", [kind for kind in KINDS if kind not in (*FLYING, "lie")])
     def test_others_never_leave_the_floor(self, kind):
         """The control: what walks or stands has a sole within 2 cm of the floor at any time."""
         assert soles(FIGURE, perform(FIGURE, Motion(kind)))[..., 2].min(axis=(1, 2)).max() < 0.02
@@ -238,3 +244,34 @@ class TestOthers:
             forward = (of(track, f"{side}_wrist") - of(track, f"{side}_shoulder"))[reach.argmax()]
             assert reach.min() < 0.35 and reach.max() > 0.5
             assert forward[0] > 0.8 * reach.max()
+
+    @pytest.mark.parametrize("name", figure_names())
+    @pytest.mark.parametrize("seed", [0, 1, 2])
+    def test_bend_lowers_the_trunk_to_half_of_the_height_and_raises_it(self, name, seed):
+        figure = load_figure(name)
+        track = perform(figure, Motion("bend", duration=6.0, seed=seed))
+        highest = track.joints[..., 2].max(axis=1)
+        assert highest.min() < 0.55 * highest[0] and highest[-1] == pytest.approx(highest[0], abs=0.01)
+        ankles = np.stack([of(track, f"{side}_ankle") for side in ("left", "right")])
+        assert np.ptp(ankles, axis=1)[..., :2].max() < 0.1  # of a shoe of 0.28: it does not step
+
+    @pytest.mark.parametrize("seed", range(4))
+    def test_who_lies_lies_flat_and_stands_up_again(self, seed):
+        """No joint is higher than a knee bent by 30 degrees is: sin 30 of 0.43 m, over the hip's 0.12."""
+        track = perform(FIGURE, Motion("lie", duration=8.0, seed=seed))
+        highest = track.joints[..., 2].max(axis=1)
+        assert highest.min() < 0.34
+        assert np.count_nonzero(highest < 0.34) > 30  # of its 4.8 s, it falls in one and gets up in less than two
+        trunk = (of(track, "thorax") - of(track, "pelvis"))[highest.argmin()]
+        assert abs(trunk[2]) < 0.3 * np.linalg.norm(trunk)
+        assert highest[[0, -1]].min() > 1.7
+
+    def test_some_lie_on_the_back_and_some_on_the_face(self):
+        """The shoes' tips point up or down: toes are above the ankles, or below."""
+        sides = set()
+        for seed in range(6):
+            track = perform(FIGURE, Motion("lie", duration=6.0, seed=seed))
+            lowest_at = track.joints[..., 2].max(axis=1).argmin()
+            toes, foot = (track.places[lowest_at, FIGURE.bone(f"left_{bone}"), 2] for bone in ("toes", "foot"))
+            sides.add(toes > foot)
+        assert sides == {True, False}

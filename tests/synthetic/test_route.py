@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from motion_measures import lowest
 from muybridge.errors import InputError
+from muybridge.synthetic.clip import LOWERED
 from muybridge.synthetic.motion import Motion, perform
 from muybridge.synthetic.planting import sole
 from muybridge.synthetic.route import ACCELERATION, plan, stride_length
@@ -75,10 +79,43 @@ class TestPerformed:
         assert np.median(speed.min(axis=0)[path.pace[1:] == 1]) < SPEED / 3
 
 
+@pytest.fixture(scope="module", params=LOWERED)
+def lowered(request):
+    way = ((-1.5, 0.0, 0.0), (0.0, 0.0, 1.0), (1.0, 0.0, 6.0), (2.0, 1.0, 0.0))
+    figure, motion = load_figure("woman"), Motion(request.param, duration=14.0, rate=RATE, way=way)
+    return figure, motion, perform(figure, motion)
+
+
+class TestLowered:
+    def test_goes_down_at_the_longest_stop_alone(self, lowered):
+        figure, motion, track = lowered
+        walk = perform(figure, replace(motion, kind="walk"))
+        highest, usual = (one.joints[..., 2].max(axis=1) for one in (track, walk))
+        begin, seconds = plan(motion, stride_length(figure, motion) * motion.cadence).stops[-1]
+        at_stop = (motion.times >= begin) & (motion.times <= begin + seconds)
+        assert highest[at_stop].min() < {"crouch": 0.85, "bend": 0.55, "lie": 0.25}[motion.kind] * usual.max()
+        assert highest[~at_stop].min() > 0.95 * usual.min()
+
+    def test_the_feet_stay(self, lowered):
+        """Their middle, from the first moment of the stop to the last: it is what is held."""
+        figure, motion, track = lowered
+        begin, seconds = plan(motion, stride_length(figure, motion) * motion.cadence).stops[-1]
+        at_stop = (motion.times > begin) & (motion.times < begin + seconds)
+        soles = [sole(figure, track.rotations, track.places, side)[at_stop] for side in ("left", "right")]
+        middle = np.concatenate(soles, axis=1)[..., :2].mean(axis=1)
+        assert np.abs(middle - middle[0]).max() < 0.01
+        assert np.abs(np.diff(track.places[:, 0, :2], axis=0)).max() < 1.5 / RATE + 0.02
+
+    def test_nothing_is_below_the_floor(self, lowered):
+        """As of every motion: the lowest vertex is within 1.5 cm of the floor."""
+        figure, _, track = lowered
+        assert np.abs(lowest(figure, track, every=10)).max() < 0.015
+
+
 class TestErrors:
     @pytest.mark.parametrize("kind", ["wave", "jog"])
     def test_only_walks_have_a_way(self, kind):
-        with pytest.raises(InputError, match="of a walk"):
+        with pytest.raises(InputError, match="of walk, crouch, bend, lie"):
             Motion(kind, way=WAY)
 
     @pytest.mark.parametrize("way", [((0, 0, 0),), ((0, 0, 0), (1, np.nan, 0)), ((0, 0, -1), (1, 1, 0))])

@@ -14,6 +14,7 @@
 | `evidence`, `detect` | what foreground says about boxes, and where somebody new is | ours |
 | `appearance` | what somebody looks like from head to foot, and whose a pixel is | ours |
 | `identity` | who is who after people met | ours |
+| `down` | who crouches, bends or lies, and how large their box then is | ours |
 | `filtered`, `person`, `tracker` | one box, one person, all of them | ch. 4, 5 |
 | `tracks`, `run` | what comes out; a video from end to end | |
 | `on_ground` | where people stand on the floor, of a calibrated camera | |

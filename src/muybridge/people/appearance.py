@@ -74,6 +74,11 @@ class Appearance:
         result = (1 - EVEN) * spread.reshape(BANDS, CODES) + EVEN / CODES
         return np.ascontiguousarray(result, dtype=np.float32)
 
+    @cached_property
+    def pooled(self) -> Appearance:
+        """Without the order of the bands: somebody who lies has their head and feet at any side of the box."""
+        return replace(self, histograms=np.tile(self.histograms.mean(axis=0), (BANDS, 1)))
+
 
 def colour_codes(picture: Picture) -> NDArray[np.int16]:
     """(H, W) the joint bins of a picture (H, W, 3) uint8, Y Cr Cb."""

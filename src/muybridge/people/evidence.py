@@ -31,6 +31,9 @@ from muybridge.people.silhouette import Silhouette
 AROUND = 0.2  # of a box's size: how far an outline may be larger
 HIDES = 0.5  # probability that a pixel is a nearer one's, from which on it says nothing of others
 SCRAP = 0.02  # of the largest region: what is smaller is noise; feet are more, where legs above them are missing
+NEIGHBOURS = 0.3  # of a person's height: whose box is further away has no part in what is seen of them
+RIM = 3  # pixels round somebody: masks miss so much beside what hides them
+PIECE = 0.2  # of the largest piece of somebody: what is smaller and apart from it is none
 Place = tuple[slice, slice]
 """Rows and columns."""
 
@@ -56,6 +59,25 @@ class Claim:
 
     box: FloatArray
     colours: NDArray[np.float32] | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Region:
+    """Foreground that hangs together.
+
+    box : (4,) centre, width, height
+    filled : share of the box that is foreground
+    open : share of the pixels just around it which hide nothing
+    """
+
+    box: FloatArray
+    filled: float
+    open: float = 1.0
+
+    @property
+    def pixels(self) -> float:
+        """Of the foreground."""
+        return self.filled * float(self.box[2] * self.box[3])
 
 
 class Evidence:
@@ -155,6 +177,35 @@ class Evidence:
             return None
         return np.concatenate([(low + high) / 2, high - low + 1.0])
 
+    def region(self, state: FloatArray) -> Region | None:
+        """The foreground that may be the person's and hangs together with what is in a box (>= 4,).
+
+        None where there is none, or where it goes on beyond the picture or twice the box's height away.
+        """
+        import cv2
+
+        x, y, width, height = state[:4]
+        rows, columns = middle(np.array([x, y, width + 4 * height, 3 * height]), 1.0)
+        part = np.ascontiguousarray((self.share[rows, columns] > 0.5) & self.shown[rows, columns], dtype=np.uint8)
+        inner_rows, inner_columns = middle(state, 1.0)
+        _, labels, regions, _ = cv2.connectedComponentsWithStats(part, connectivity=8)
+        inside = labels[inner_rows.start - rows.start : inner_rows.stop - rows.start,
+                        inner_columns.start - columns.start : inner_columns.stop - columns.start]  # fmt: skip
+        counts = np.bincount(inside.ravel(), minlength=len(regions))
+        counts[0] = 0
+        if not counts.any():
+            return None
+        pieces = counts >= PIECE * counts.max()
+        kept = regions[pieces]
+        low, high = kept[:, :2].min(axis=0), (kept[:, :2] + kept[:, 2:4]).max(axis=0)
+        own = pieces[labels].view(np.uint8)
+        rim = cv2.dilate(own, np.ones((2 * RIM + 1,) * 2, np.uint8)) > own
+        if (low <= 0).any() or (high >= part.shape[::-1]).any():
+            return None
+        place = (low + high - 1) / 2 + (columns.start, rows.start)
+        filled, clear = kept[:, 4].sum() / (high - low).prod(), self.shown[rows, columns][rim].mean()
+        return Region(np.concatenate([place, high - low]).astype(np.float64), float(filled), float(clear))
+
     def observe(self, area: float) -> ForegroundLikelihood:
         """For a person whose box is expected to have so many pixels."""
         return ForegroundLikelihood(self, self.config.looks / area)
@@ -196,6 +247,12 @@ class Together:
     def log_prob(self, states: FloatArray) -> FloatArray:
         """(N,) of boxes (N, >= 4)."""
         return np.sum([cue.log_prob(states) for cue in self.cues], axis=0)
+
+
+def touching(person: Claim, others: Sequence[Claim]) -> list[Claim]:
+    """Those whose boxes may meet the person's, wherever in its reach it is."""
+    reach = 0.5 * person.box[2:4] + NEIGHBOURS * person.box[3]
+    return [other for other in others if (np.abs(other.box[:2] - person.box[:2]) < reach + 0.5 * other.box[2:4]).all()]
 
 
 def middle(state: FloatArray, share: float) -> Place:

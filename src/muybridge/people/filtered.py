@@ -72,6 +72,12 @@ class Filtered:
         state = condensation.init(rng, mean, sd, FILTER, motion.lower, motion.upper)
         return cls(state, learn(frame.picture, mean, colour))
 
+    def place(self, rng: np.random.Generator, box: FloatArray, motion: BoxMotion) -> None:
+        """Put all particles at one place (>= 4,), at rest; what it looks like is kept."""
+        mean = np.concatenate([box[:SPEED_X], np.zeros(2)])
+        sd = np.array([START_SD] * 4 + [0.0] * 2)
+        self.state = condensation.init(rng, mean, sd, FILTER, motion.lower, motion.upper)
+
     def step(self, rng: np.random.Generator, likelihood: Likelihood, motion: BoxMotion, counts: CountConfig) -> None:
         """One frame, with as many particles as the last weights ask for (4.18)."""
         config = replace(FILTER, particles=adapted_count(self.state.log_weights, counts))

@@ -50,6 +50,10 @@ class GroundScale:
         """Expected heights, pixels, for rows of feet, of the same shape; at least `SHORTEST`."""
         return np.maximum(SHORTEST, self.offset + self.slope * np.asarray(feet, dtype=np.float64))
 
+    def area(self, feet: float) -> float:
+        """Pixels of the box of a person whose feet are in a row."""
+        return self.aspect * float(self.height(feet)) ** 2
+
     def of_person(self, stature: float, breadth: float = 1.0) -> GroundScale:
         """The same for somebody so many times as tall, and for their height as broad, as people are on average."""
         aspect = breadth * self.aspect

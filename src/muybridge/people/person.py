@@ -16,6 +16,7 @@ from muybridge.people.appearance import LONGEST, Appearance, AppearanceLikelihoo
 from muybridge.people.arrangement import Arrangement
 from muybridge.people.box import HEIGHT, WIDTH, BoxMotion, CountConfig, X, Y
 from muybridge.people.colour_likelihood import ColourConfig, Picture
+from muybridge.people.down import Down
 from muybridge.people.evidence import Together
 from muybridge.people.filtered import Filtered, Frame
 from muybridge.people.ground import GroundScale
@@ -60,11 +61,17 @@ class Person:
         Of the box now: the share that can be seen, and the share of that which is foreground.
     alike, usual : float
         Nats a pixel by which that looks like this person more than like anybody; and the mean of that while it was
-        clear to see.
+        clear to see and upright.
     looks : int
         Frames from which `look` was learnt.
     stature, breadth : float
         Of people's mean height, and of the mean of width over height.
+    down : Down or None
+        Whether they crouch, bend or lie, and how large the box then is.
+    otherwise : int
+        Frames in a row in which it looked as if they had gone down, or come up again.
+    usual_down : float
+        What `alike` should be while they are down.
     """
 
     identity: int
@@ -89,6 +96,9 @@ class Person:
     breadth: float = 1.0
     last_clear: Sighting | None = None
     parts: Arrangement | Parts | None = None
+    down: Down | None = None
+    otherwise: int = 0
+    usual_down: float = 0.0
 
     def measure(self, outline: FloatArray, ground: GroundScale, rate: float) -> None:
         """Learn how tall and how broad they are from the box of their foreground (4,), where it agrees with their own.
@@ -108,7 +118,8 @@ class Person:
     @property
     def is_another(self) -> bool:
         """Whether what is in the box looks much less like them than it used to."""
-        return self.alike < UNLIKE * self.usual - DOUBT
+        usual = self.usual if self.down is None else self.usual_down
+        return self.alike < UNLIKE * usual - DOUBT
 
     @property
     def missing(self) -> int:
@@ -119,6 +130,16 @@ class Person:
     def is_known(self) -> bool:
         """Whether their look was learnt from enough frames to tell them from others."""
         return self.confirmed and self.looks >= ENOUGH_LOOKS
+
+    @property
+    def colours(self) -> Appearance | None:
+        """What they look like in the box as it is now."""
+        return self.appearance if self.down is None or self.appearance is None else self.appearance.pooled
+
+    def may_be_down(self, number: int, frames: int) -> bool:
+        """Whether they are, or stood there clear to see for so many frames, and not longer before this one."""
+        stood = self.last_clear is not None and number - self.last_clear.frame <= frames <= self.looks
+        return stood or self.down is not None
 
     def remember(self, frame: Frame) -> None:
         """Learn what they look like; only while they are clear to see."""
@@ -148,15 +169,21 @@ def follow(
     """One frame of the body's filter, of what is evidence for this person."""
     body, evidence = person.body, frame.evidence
     ground = None if ground is None else ground.of_person(person.stature, person.breadth)
+    sizes: Likelihood | None = ground
+    if person.down is not None:
+        evidence, sizes, motion = person.down.evidence(evidence), person.down, person.down.motion(motion)
     colour = body.target.observe(frame.picture, frame.background, evidence.shown)
     cues: list[Likelihood] = [evidence.observe(usual_area(body.box, ground))]
-    if ground is not None:
-        cues.append(ground)
+    if sizes is not None:
+        cues.append(sizes)
     looks = None
-    if person.appearance is not None and anybody is not None and evidence.codes is not None:
+    if person.colours is not None and anybody is not None and evidence.codes is not None:
         scale = APPEARANCE * evidence.config.looks / usual_area(body.box, ground)
         counted = evidence.share * evidence.weights
-        looks = AppearanceLikelihood(evidence.codes, counted, log_ratios(person.appearance, anybody), scale)
+        ratios = log_ratios(person.colours, anybody)
+        if person.down is not None:
+            person.usual_down = float((person.colours.histograms * ratios.T).sum() / len(anybody))
+        looks = AppearanceLikelihood(evidence.codes, counted, ratios, scale)
         cues.append(looks)
     elif evidence.seen(body.expected)[0] >= TRUST_COLOUR:
         cues.append(colour)
@@ -170,10 +197,7 @@ def follow(
 
 def usual_area(box: FloatArray, ground: GroundScale | None) -> float:
     """Pixels of a person's box who stands where this one (>= 4,) does; its own where nothing is known of the ground."""
-    if ground is None:
-        return float(box[2] * box[HEIGHT])
-    height = float(ground.height(feet(box)))
-    return ground.aspect * height * height
+    return float(box[2] * box[HEIGHT]) if ground is None else ground.area(feet(box))
 
 
 def feet(box: FloatArray) -> float:

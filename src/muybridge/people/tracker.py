@@ -27,7 +27,8 @@ from muybridge.people.box import PRINTED_VARIANCES, BoxMotion, CountConfig, boxe
 from muybridge.people.colour_likelihood import ColourConfig, Picture
 from muybridge.people.contrast_likelihood import ContrastConfig
 from muybridge.people.detect import Places, find_standing
-from muybridge.people.evidence import Claim, Evidence, ForegroundConfig
+from muybridge.people.down import look_lower
+from muybridge.people.evidence import Claim, Evidence, ForegroundConfig, touching
 from muybridge.people.failure import FailureDetector
 from muybridge.people.filtered import Filtered, Frame
 from muybridge.people.ground import GroundScale
@@ -41,9 +42,10 @@ from muybridge.people.tracks import Tracks, gathered
 
 HIDDEN = 0.3  # share of a box that can be seen; less is called hidden, not lost
 EMPTY, FULL = 0.4, 0.6  # of what a person fills: less, and nobody is there; more, and all of them is
+DECIDED_S = 0.12  # seconds in which it must look as if somebody had gone down, or come up again
+STOOD_S = 2.0  # seconds for which, and since which at most, somebody was clear to see who goes down
 MEASURED_S = 1.0  # seconds in which somebody's height is learnt
 WALK = 0.6  # heights a second: standard deviation of speeds that are tried for somebody new; a brisk walk is 1
-NEIGHBOURS = 0.3  # of a person's height: whose box is further away has no part in what is seen of them
 SAME, APART = 0.6, 0.05  # intersection over union of boxes that may be one person; of people clear of each other
 
 
@@ -57,6 +59,7 @@ class TrackerConfig:
     foreground: ForegroundConfig = ForegroundConfig()
     identity: IdentityConfig = IdentityConfig()
     parts: PartConfig = PartConfig()
+    down: bool = False  # whether boxes leave the size of a standing person where the foreground is clearly lower
     held: bool = True  # parts are one state on the body; false: each goes where its colours are, as in the paper
     counts: CountConfig = CountConfig()
     blobs: BlobConfig = BlobConfig()  # where the ground's scale is not known
@@ -181,17 +184,23 @@ class PeopleTracker:
         """The body, what can be seen of it, the parts; and what the body explains."""
         all_of_it = frame.evidence
         mine = self._claim(person, person.body.expected)
-        frame = replace(frame, evidence=all_of_it.of(mine, _touching(mine, nearer), _touching(mine, further)))
-        follow(person, frame, self._motion, self.config.counts, self.scene.ground, self._anybody)
+        frame = replace(frame, evidence=all_of_it.of(mine, touching(mine, nearer), touching(mine, further)))
+        ground = self.scene.ground
+        if self.config.down and ground is not None and person.may_be_down(frame.number, self._frames(STOOD_S)):
+            others = [other.box for other in (*nearer, *further)]
+            look_lower(person, frame.evidence, ground, others, self._motion, self._frames(DECIDED_S))
+        follow(person, frame, self._motion, self.config.counts, ground, self._anybody)
         if person.visible < HIDDEN:
             person.hidden += 1
-        elif person.filled < EMPTY * self.scene.silhouette.mean or person.is_another:
+        elif person.filled < EMPTY * self._filled(person) or person.is_another:
             person.unseen += 1
         else:
             person.seen += 1
             person.unseen = person.hidden = 0
             person.confirmed |= person.seen >= self._frames(self.config.confirm_s)
         parts, box = None, person.body.box
+        if person.down is not None:
+            person.parts = None  # to be cut anew once they are upright
         if person.parts is not None:
             trusted = person.visible >= TRUST_WHOLE and not person.missing
             parts = person.parts.step(box, frame, trusted)
@@ -202,7 +211,7 @@ class PeopleTracker:
 
     def _claim(self, person: Person, box: FloatArray) -> Claim:
         """Whose look is not known yet looks like anybody."""
-        return Claim(box, self._anybody if person.appearance is None else person.appearance.colours)
+        return Claim(box, self._anybody if person.colours is None else person.colours.colours)
 
     def _give_up(self, frame: Frame) -> None:
         """Those unseen for too long, those too far away, and one of two who are one."""
@@ -262,8 +271,13 @@ class PeopleTracker:
                 person.measure(outline, ground, 1 / (1 + MEASURED_S * self._rate))
 
     def _is_whole(self, person: Person) -> bool:
-        full = person.filled > FULL * self.scene.silhouette.mean
+        """And upright: only then their looks, parts and size are told."""
+        full = person.filled > FULL * self.scene.silhouette.mean and person.down is None
         return full and person.visible >= TRUST_WHOLE and not person.missing
+
+    def _filled(self, person: Person) -> float:
+        """The share of their box that they fill."""
+        return self.scene.silhouette.mean if person.down is None else person.down.filled
 
     def _welcome(self, frame: Frame) -> None:
         """Somebody new for every box that explains foreground which nobody followed does."""
@@ -292,9 +306,3 @@ class PeopleTracker:
         """(P, P) intersection over union of everybody's box with everybody else's."""
         boxes = boxes_from_states(np.array([person.body.box for person in people]).reshape(-1, 6))
         return overlaps(boxes, boxes) - np.eye(len(boxes))
-
-
-def _touching(person: Claim, others: list[Claim]) -> list[Claim]:
-    """Those whose boxes may meet the person's, wherever in its reach it is."""
-    reach = 0.5 * person.box[2:4] + NEIGHBOURS * person.box[3]
-    return [other for other in others if (np.abs(other.box[:2] - person.box[:2]) < reach + 0.5 * other.box[2:4]).all()]

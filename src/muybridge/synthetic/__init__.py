@@ -17,8 +17,9 @@
 
 `motion`          `Motion`, `Recorded`, `perform(figure, motion)`: what a figure does, made or recorded
 `clip`            `Motion`: what may be done and how; `Track`: what then was; `posture`: between two frames
-`gaits`           walk, wave, crouch, punch: joint angles over time; `angles` turns bones by them
-`route`           walks through points of the floor, with stops
+`gaits`           walk, wave, punch: joint angles over time; `angles` turns bones by them
+`lowered`         crouch, bend, lie: down and up again
+`route`           walks through points of the floor, with stops, at one of which one may go down
 `planting`        feet on the floor that hardly slip, for motions told by angles
 `footwork`        jog, hop, jump, turn, sidestep: told by where the feet go
 `stepping`        footprints, free fall between them, and legs (`limbs`) that reach them

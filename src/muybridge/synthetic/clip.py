@@ -9,7 +9,9 @@ import numpy as np
 from muybridge.errors import InputError
 
 #: Their order seeds what they do: new ones come last.
-KINDS = ("walk", "wave", "crouch", "jog", "hop", "jump", "turn", "sidestep", "punch")
+KINDS = ("walk", "wave", "crouch", "jog", "hop", "jump", "turn", "sidestep", "punch", "bend", "lie")
+#: These may be done on a way, at its longest stop.
+LOWERED = ("crouch", "bend", "lie")
 
 
 @dataclass(frozen=True)
@@ -20,7 +22,8 @@ class Motion:
     ----------
     kind : one of KINDS
         "walk"; "wave", standing, one arm up; "crouch", down and up again; "jog"; on the
-        spot "hop" on one leg, "jump" on both, and "turn"; "sidestep", facing ahead; "punch", standing
+        spot "hop" on one leg, "jump" on both, and "turn"; "sidestep", facing ahead; "punch", standing;
+        "bend" at the hips, and "lie", who falls and gets up again, in the middle of the clip
     duration, rate : seconds, frames per second
     heading : radians, at the middle of the clip, counter-clockwise from +x
         Walked and jogged at; faced, where the feet stay on the spot or go sideways.
@@ -29,7 +32,8 @@ class Motion:
     cadence : pace: strides (two steps) per second of a walk, others in proportion
     vigour : factor on the amplitudes, 1 = table
     way : of a walk from point to point: (x, y, seconds) of each, metres, world, and how long one stands there; at the
-        last one to the end of the clip. Heading, turn_rate and place then have no say
+        last one to the end of the clip. Heading, turn_rate and place then have no say. Who crouches, bends or lies does
+        so at the longest stop but the last, all the time of it
     """
 
     kind: str = "walk"
@@ -49,10 +53,9 @@ class Motion:
         for name in ("duration", "rate", "cadence", "vigour"):
             if not (np.isfinite(getattr(self, name)) and getattr(self, name) > 0):
                 raise InputError(f"motion: {name}", expected="a positive number", got=str(getattr(self, name)))
-        if self.way and (self.kind != "walk" or len(self.way) < 2):
-            raise InputError(
-                "motion: way", expected="two points or more, of a walk", got=f"{len(self.way)} of a {self.kind}"
-            )
+        if self.way and (self.kind not in ("walk", *LOWERED) or len(self.way) < 2):
+            expected = f"two points or more, of walk, {', '.join(LOWERED)}"
+            raise InputError("motion: way", expected=expected, got=f"{len(self.way)} of a {self.kind}")
         if self.way and not (np.isfinite(self.way).all() and min(point[2] for point in self.way) >= 0):
             raise InputError("motion: way", expected="finite x, y and seconds, seconds 0 or more", got=str(self.way))
 

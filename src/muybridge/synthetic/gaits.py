@@ -61,24 +61,6 @@ def wave(rng: np.random.Generator, motion: Motion) -> tuple[Angles, np.ndarray]:
     return angles, np.ones((len(motion.times), 2))
 
 
-def crouch(rng: np.random.Generator, motion: Motion) -> tuple[Angles, np.ndarray]:
-    """Down and up again, on both feet."""
-    angles = standing(rng, motion)
-    depth = 0.5 - 0.5 * np.cos(2 * np.pi * np.clip(motion.cadence * motion.times / 2.4, 0, 1))
-    depth = depth * min(motion.vigour, 1.1) * rng.uniform(0.85, 1.0)
-    for side in ("left", "right"):
-        add(angles, f"{side}_thigh", 85.0 * depth, 9.0 * depth)
-        add(angles, f"{side}_shank", -105.0 * depth)
-        add(angles, f"{side}_foot", 28.0 * depth)
-        add(angles, f"{side}_upper_arm", 62.0 * depth, 8.0 * depth)
-        add(angles, f"{side}_forearm", 25.0 * depth)
-    add(angles, "pelvis", -8.0 * depth)
-    add(angles, "abdomen", -14.0 * depth)
-    add(angles, "thorax", -10.0 * depth)
-    add(angles, "neck", 14.0 * depth)
-    return angles, np.ones((len(motion.times), 2))
-
-
 def punch(rng: np.random.Generator, motion: Motion) -> tuple[Angles, np.ndarray]:
     """In a boxer's stance, the fists before the chin: straight punches, now one arm, now the other."""
     angles = standing(rng, motion)

@@ -6,11 +6,11 @@ from collections.abc import Callable
 
 import numpy as np
 
-from muybridge.synthetic import footwork, gaits
+from muybridge.synthetic import footwork, gaits, lowered
 from muybridge.synthetic.angles import Angles, rotations
 from muybridge.synthetic.clip import KINDS, Motion, Track
 from muybridge.synthetic.limbs import leg_length
-from muybridge.synthetic.planting import planted
+from muybridge.synthetic.planting import lowest, planted
 from muybridge.synthetic.recorded import Recorded, pose
 from muybridge.synthetic.route import route
 from muybridge.synthetic.skinning import Figure
@@ -22,8 +22,10 @@ __all__ = ["KINDS", "Motion", "Recorded", "Track", "perform"]
 FROM_ANGLES: dict[str, Callable[[np.random.Generator, Motion], tuple[Angles, np.ndarray]]] = {
     "walk": gaits.walk,
     "wave": gaits.wave,
-    "crouch": gaits.crouch,
+    "crouch": lowered.crouch,
     "punch": gaits.punch,
+    "bend": lowered.bend,
+    "lie": lowered.lie,
 }
 #: Angles of all but the legs, and the steps; the last argument is the length of the legs in metres.
 FROM_STEPS: dict[str, Callable[[np.random.Generator, Motion, float], tuple[Angles, Steps]]] = {
@@ -57,6 +59,8 @@ def _by_angles(rng: np.random.Generator, figure: Figure, motion: Motion) -> tupl
     heading = motion.heading + turn_rate * (motion.times - 0.5 * motion.times[-1])
     worlds, places = _posed(figure, rotations(figure, angles, heading))
     places += planted(figure, worlds, places, bearing, motion)[:, None]
+    if motion.kind == "lie":
+        places[..., 2] -= lowest(figure, worlds, places)[:, None]
     return worlds, places
 
 

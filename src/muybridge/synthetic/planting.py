@@ -40,6 +40,11 @@ def sole(figure: Figure, worlds: np.ndarray, places: np.ndarray, side: str) -> n
     return np.stack(points, axis=1)
 
 
+def lowest(figure: Figure, worlds: np.ndarray, places: np.ndarray) -> np.ndarray:
+    """(T,) metres: the height of the mesh's lowest vertex, for bodies that more than soles bear."""
+    return np.array([figure.skin(*frame)[:, 2].min() for frame in zip(worlds, places, strict=True)])
+
+
 def foot_points(figure: Figure, side: str) -> np.ndarray:
     """(5, 3) metres: heel, ball, tip, and the sole's right and left edge beside the ball, in the neutral posture.
 

@@ -2,7 +2,8 @@
 
 A stop is a point at which one stands for a while; between two stops lies a leg, a line whose corners are rounded. Along
 a leg people speed up, walk at the pace of their legs, and slow down. The strides done follow from the distance, so feet
-slip little; standing still, the gait's angles fade to those of standing.
+slip little; standing still, the gait's angles fade to those of standing. At the longest stop one may go down and up
+again (`lowered`): the feet then stay where they are.
 """
 
 from __future__ import annotations
@@ -12,9 +13,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from muybridge.synthetic.angles import rotations
-from muybridge.synthetic.clip import Motion
+from muybridge.synthetic.clip import LOWERED, Motion
 from muybridge.synthetic.gaits import standing, walk
-from muybridge.synthetic.planting import planted, smoothed, sole
+from muybridge.synthetic.limbs import SIDES
+from muybridge.synthetic.lowered import lower
+from muybridge.synthetic.planting import lowest, planted, smoothed, sole
 from muybridge.synthetic.skinning import Figure
 
 ACCELERATION = 1.2  # metres a second squared
@@ -34,12 +37,14 @@ class Plan:
     headings : (T,) radians
     walked : (T,) metres since the beginning
     pace : (T,) in 0-1: speed as a share of the walking speed
+    stops : (begin, seconds) of those between two legs
     """
 
     places: np.ndarray
     headings: np.ndarray
     walked: np.ndarray
     pace: np.ndarray
+    stops: tuple[tuple[float, float], ...]
 
 
 def route(rng: np.random.Generator, figure: Figure, motion: Motion) -> tuple[np.ndarray, np.ndarray]:
@@ -51,11 +56,23 @@ def route(rng: np.random.Generator, figure: Figure, motion: Motion) -> tuple[np.
     still = standing(np.random.default_rng(seed), motion)
     share = path.pace[:, None]
     angles = {bone: share * turned + (1 - share) * still.get(bone, np.zeros(3)) for bone, turned in gait.items()}
+    depth = np.zeros(len(path.pace))
+    if motion.kind in LOWERED and path.stops:
+        depth = lower(rng, motion, angles, *max(path.stops, key=lambda stop: stop[1]))
     worlds, places = _posed(figure, rotations(figure, angles, path.headings))
-    lowest = np.minimum(*(sole(figure, worlds, places, side)[..., 2].min(axis=1) for side in ("left", "right")))
-    places[..., 2] -= smoothed(lowest, width=0.02 * motion.rate)[:, None]
-    places[..., :2] += (path.places - places[:, 0, :2])[:, None]
+    soles = np.concatenate([sole(figure, worlds, places, side) for side in SIDES], axis=1)
+    places[..., 2] -= smoothed(soles[..., 2].min(axis=1), width=0.02 * motion.rate)[:, None]
+    if motion.kind == "lie":
+        places[depth > 0, :, 2] -= lowest(figure, worlds[depth > 0], places[depth > 0])[:, None]
+    places[..., :2] += (path.places - places[:, 0, :2] - _strayed(soles, depth))[:, None]
     return worlds, places
+
+
+def _strayed(soles: np.ndarray, depth: np.ndarray) -> np.ndarray:
+    """(T, 2) metres by which soles (T, points, 3) go away from the pelvis while one is down: depth (T,) above 0."""
+    down = depth > 0
+    middle = soles[..., :2].mean(axis=1)
+    return np.where(down[:, None], middle - middle[np.argmax(down)], 0.0)
 
 
 def stride_length(figure: Figure, motion: Motion) -> float:
@@ -71,7 +88,7 @@ def plan(motion: Motion, speed: float) -> Plan:
     """Where one is at every frame, walking at this speed, metres a second."""
     times, distance = motion.times, 0.0
     walked, pace = np.zeros(len(times)), np.zeros(len(times))
-    lines, clock = [], motion.way[0][2]
+    lines, stops, clock = [], [], motion.way[0][2]
     for leg in _legs(motion):
         line = _rounded(np.array(leg)[:, :2])
         length = float(np.linalg.norm(np.diff(line, axis=0), axis=1).sum())
@@ -80,6 +97,7 @@ def plan(motion: Motion, speed: float) -> Plan:
         pace += going
         lines.append(line)
         distance += length
+        stops.append((clock + seconds, leg[-1][2]))
         clock += seconds + leg[-1][2]
     line = np.concatenate(lines)
     along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(line, axis=0), axis=1))])
@@ -91,6 +109,7 @@ def plan(motion: Motion, speed: float) -> Plan:
         smoothed(np.interp(walked, along, courses), width=TURNING * motion.rate),
         walked,
         pace,
+        tuple(stops[:-1]),
     )
 
 
