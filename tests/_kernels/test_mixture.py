@@ -52,8 +52,9 @@ class Mixtures:
             assert found == (matched[y, x], fresh[y, x])
 
     def look(self) -> tuple[np.ndarray, ...]:
-        """As `mixture_look` fills them: nearest, densities, peaks, shown, alone."""
-        out = (np.empty((H, W), np.int8), np.zeros((H, W, MOST_SLOTS), np.float32), np.empty((2, H, W), np.float32),
+        """As `mixture_look` fills them: nearest, squares, densities, peaks, shown, alone."""
+        slots = (np.zeros((H, W, MOST_SLOTS), np.float32) for _ in range(2))
+        out = (np.empty((H, W), np.int8), *slots, np.empty((2, H, W), np.float32),
                np.empty((H, W), np.int8), np.empty((H, W), np.float32))  # fmt: skip
         mixture_look(self.image, self.weights, self.means, self.variances, self.kept, LIMIT, *out)
         return out
@@ -80,7 +81,7 @@ def test_background_components() -> None:
 
 
 def test_densities_and_scores() -> None:
-    nearest, found, peaks, shown, alone = MADE.look()
+    nearest, squares, found, peaks, shown, alone = MADE.look()
     scores, again = np.empty((H, W), np.float32), np.empty((H, W), np.int8)
     mixture_scores(MADE.image, MADE.weights, MADE.means, MADE.variances, MADE.kept, scores)
     mixture_nearest(MADE.image, MADE.weights, MADE.means, MADE.variances, LIMIT, again)
@@ -91,6 +92,8 @@ def test_densities_and_scores() -> None:
             MADE.image[y, x].astype(float), MADE.means[y, :, :, x], MADE.variances[y, :, :, x]
         )
         np.testing.assert_allclose(found[y, x, :K], wanted, rtol=SINGLE)
+        far = literal.distances(MADE.image[y, x].astype(float), MADE.means[y, :, :, x], MADE.variances[y, :, :, x])
+        np.testing.assert_allclose(squares[y, x, :K], far, rtol=SINGLE)
         np.testing.assert_array_equal(peaks[:, y, x], np.sort(found[y, x])[:-3:-1])
         assert found[y, x, shown[y, x]] == peaks[0, y, x]
         np.testing.assert_allclose(alone[y, x], MADE.weights[y, :, x] @ wanted, rtol=SINGLE, atol=literal.LEAST)
@@ -138,16 +141,19 @@ def test_scores_and_partners(pictures: int) -> None:
     counts, totals = learnt_pairs(0.02, pictures)
     information, partners = np.zeros((len(OFFSETS), H, W), np.float32), np.zeros((H, W, 2), np.int8)
     choose_partners(counts, OFFSETS, 0, 1, information, partners)
-    _, found, peaks, shown, alone = MADE.look()
+    _, squares, found, peaks, shown, alone = MADE.look()
     out = np.empty((H, W), np.float32)
-    pair_scores(alone, found, peaks, shown, counts, totals, OFFSETS, partners, 4.0, out)
+    pair_scores(alone, found, squares, peaks, shown, counts, totals, OFFSETS, partners, 4.0, out)
     for y, x in np.ndindex(H, W):
         candidates = {}
         for n in range(2 * len(OFFSETS)):
             pair = matrix_of(counts, n, y, x)
             if pair is not None:
-                candidates[n] = pair[0], found[pair[1]][:K].astype(float)
-        gain = {n: literal.mutual_information(matrix) if matrix.any() else 0.0 for n, (matrix, _) in candidates.items()}
+                far = tuple(squares[place][:K].astype(float) for place in ((y, x), pair[1]))
+                candidates[n] = pair[0], found[pair[1]][:K].astype(float), far
+        gain = {
+            n: literal.mutual_information(matrix) if matrix.any() else 0.0 for n, (matrix, _, _) in candidates.items()
+        }
         chosen = [int(n) for n in partners[y, x] if n >= 0]
         assert len(chosen) == min(2, len(candidates))
         for rank, n in enumerate(sorted(gain.values(), reverse=True)[: len(chosen)]):
@@ -155,7 +161,7 @@ def test_scores_and_partners(pictures: int) -> None:
         own = found[y, x, :K].astype(float)
         wanted = -np.log(max(MADE.weights[y, :, x] @ own, literal.LEAST))
         known = [n for n in chosen if candidates[n][0].any()]
-        wanted += sum(literal.joint(candidates[n][0], own, candidates[n][1], 4.0) for n in known)
+        wanted += sum(literal.joint(candidates[n][0], own, *candidates[n][1:], 4.0) for n in known)
         np.testing.assert_allclose(out[y, x], wanted, rtol=1e-4, atol=1e-3)
 
 

@@ -18,8 +18,7 @@ def distances(colour: np.ndarray, means: np.ndarray, variances: np.ndarray) -> n
 
 def densities(colour: np.ndarray, means: np.ndarray, variances: np.ndarray) -> np.ndarray:
     """(K,): (2.2), with a tail that falls more slowly."""
-    squared = distances(colour, means, variances)
-    squared = np.where(squared > TAIL, TAIL * (1 + np.log(np.maximum(squared, TAIL) / TAIL)), squared)
+    squared = fallen(distances(colour, means, variances), TAIL)
     return np.exp(-squared / 2) * np.prod(256 / np.sqrt(2 * np.pi * variances), axis=1)
 
 
@@ -62,10 +61,22 @@ def learn(
     return -1, lightest
 
 
-def joint(counts: np.ndarray, own: np.ndarray, other: np.ndarray, limit: float) -> float:
-    """-log of P(c0, ci) (3.2), -log P(ci) counting at most `limit`; counts (K, K): own component, the other's."""
+def fallen(squared: np.ndarray, tail: float) -> np.ndarray:
+    """What -2 log of a density falls by: a squared distance, beyond `tail` its logarithm."""
+    return np.where(squared > tail, tail * (1 + np.log(np.maximum(squared, tail) / tail)), squared)
+
+
+def joint(
+    counts: np.ndarray, own: np.ndarray, other: np.ndarray, squares: tuple[np.ndarray, np.ndarray], limit: float
+) -> float:
+    """-log of P(c0, ci) (3.2), -log P(ci) counting at most `limit`; counts (K, K): own component, the other's.
+
+    own, other (K,) densities, and their squared distances: the tail of a joint density begins where both together are
+    2 TAIL away.
+    """
     weights = counts / counts.sum()
-    both, alone = own @ weights @ other, weights.sum(axis=0) @ other
+    ratio = fallen(np.add.outer(*squares), 2 * TAIL) - np.add.outer(*(fallen(one, TAIL) for one in squares))
+    both, alone = own @ (weights * np.exp(-ratio / 2)) @ other, weights.sum(axis=0) @ other
     excess = -np.log(max(alone, LEAST)) - limit
     return float(-np.log(max(both, LEAST)) - max(excess, 0.0))
 

@@ -101,7 +101,7 @@ def _keep_nearer(distances, weights, k, least, nearest):
 
 
 @vector_kernel
-def _keep_density(row, weights, k, densities, first, second, shown, alone):
+def _keep_density(row, distances, weights, k, squares, densities, first, second, shown, alone):
     """What a row (W,) of densities in component k adds to what is kept of all: the arguments of `mixture_look`."""
     for x in range(shown.shape[0]):
         density = row[x]
@@ -111,6 +111,7 @@ def _keep_density(row, weights, k, densities, first, second, shown, alone):
         alone[x] += weights[x] * density
     for x in range(shown.shape[0]):
         densities[x, k] = row[x]
+        squares[x, k] = distances[x]
 
 
 @parallel_kernel
@@ -128,7 +129,7 @@ def _over_rows_nearest(image, weights, means, variances, limit, nearest):
 
 
 @parallel_kernel
-def _over_rows_look(image, weights, means, variances, kept, limit, nearest, densities, peaks, shown, alone):
+def _over_rows_look(image, weights, means, variances, kept, limit, nearest, squares, densities, peaks, shown, alone):
     height, slots, width = weights.shape
     for row in numba.prange(height):
         y = np.int64(row)
@@ -142,8 +143,9 @@ def _over_rows_look(image, weights, means, variances, kept, limit, nearest, dens
             _keep_nearer(distances, weights[y, k], np.int8(k), least, nearest[y])
             _slot_densities(distances, variances[y, k], kept[y], k, density)
             _keep_density(
-                density, weights[y, k], np.int8(k), densities[y], peaks[0, y], peaks[1, y], shown[y], alone[y]
-            )
+                density, distances, weights[y, k], np.int8(k), squares[y], densities[y], peaks[0, y], peaks[1, y],
+                shown[y], alone[y],
+            )  # fmt: skip
 
 
 @parallel_kernel
@@ -278,18 +280,21 @@ def mixture_nearest(image, weights, means, variances, limit, nearest):
     _over_rows_nearest(image, weights, means, variances, np.float32(limit), nearest)
 
 
-def mixture_look(image, weights, means, variances, kept, limit, nearest, densities, peaks, shown, alone):
+def mixture_look(image, weights, means, variances, kept, limit, nearest, squares, densities, peaks, shown, alone):
     """The same, and densities of the background's components over that of colours spread evenly over 0..255.
 
     Parameters
     ----------
     kept : (H, W) uint8, bits of the components that count
-    densities : (H, W, S) float32, filled, S = MOST_SLOTS; 0 where a component does not count
+    squares : (H, W, S) float32, filled up to K, S = MOST_SLOTS: squared Mahalanobis distances
+    densities : (H, W, S) float32, filled; 0 where a component does not count
     peaks : (2, H, W) float32, filled: the largest density of a pixel, and the second
     shown : (H, W) int8, filled: the component of the largest
     alone : (H, W) float32, filled: the density (2.1) of the mixture
     """
-    _over_rows_look(image, weights, means, variances, kept, np.float32(limit), nearest, densities, peaks, shown, alone)
+    _over_rows_look(
+        image, weights, means, variances, kept, np.float32(limit), nearest, squares, densities, peaks, shown, alone
+    )
 
 
 def mixture_scores(image, weights, means, variances, kept, out):

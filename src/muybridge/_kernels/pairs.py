@@ -3,7 +3,8 @@
 A pair (p, p + offset) is kept once, at p: counts over combinations, and their sum, so that a weight of (3.2) is a count
 over the sum. A pixel's partners are numbered 2 d for the one at offset d, and 2 d + 1 for the one at the negative
 offset, of whose pair this pixel is the second; -1 is none. A joint covariance has the blocks of the two pixels' own
-components, so a joint density is a product of two.
+components, so a joint density is a product of two, but for its tail: it falls slower from twice the squared distance of
+both together on, not of each (`_together`).
 
 counts (H, W, K, D, S) are those of p's component, of all its pairs, and of the other pixel's component: as all counts
 together fit no cache, what one picture adds at a pixel lies together. S = MOST_SLOTS, so that sums are vector code.
@@ -19,35 +20,57 @@ import numba
 import numpy as np
 
 from muybridge._kernels._jit import kernel, parallel_kernel, vector_kernel
-from muybridge._kernels.mixture import LEAST, MOST_SLOTS
+from muybridge._kernels.mixture import LEAST, MOST_SLOTS, TAIL
 
 NEGLIGIBLE = np.float32(1e-4)
 """Combinations that can change a joint density by no larger a share are left out: it is as many nats."""
 _FULL = np.float32(1e30)
-_0, _1 = np.float32(0.0), np.float32(1.0)
+_0, _1, _TAIL = np.float32(0.0), np.float32(1.0), np.float32(TAIL)
 
 
 @vector_kernel
-def _with_all(counts, a, i, d, densities, b):
+def _together(one, other):
+    """A joint density over the product of two, whose squared distances are these; 1 where neither is in its tail.
+
+    The joint one is exp(-s / 2) of their sum s up to 2 TAIL, and falls with the 16th power of s from there on.
+    """
+    near, far = min(one, other), max(one, other)
+    if far <= _TAIL:
+        return 1.0
+    both, fall = float(near) + float(far), 1.0
+    if near >= _TAIL:
+        ratio = 4.0 * near * far / (both * both)
+    elif both > 2.0 * TAIL:
+        ratio, fall = 4.0 * TAIL * far / (both * both), math.exp(0.5 * (near - TAIL))
+    else:
+        ratio, fall = far / TAIL, math.exp(0.5 * (TAIL - far))
+    ratio *= ratio
+    ratio *= ratio
+    return fall * ratio * ratio
+
+
+@vector_kernel
+def _with_all(counts, a, i, d, densities, squares, b):
     """Sum over the second pixel's components of count times density, for component i of the first."""
-    column = _0
+    column = 0.0
     for j in range(MOST_SLOTS):
-        column += counts[a, i, d, j] * densities[b, j]
+        if counts[a, i, d, j] > _0 and densities[b, j] > _0:
+            column += counts[a, i, d, j] * densities[b, j] * _together(squares[a, i], squares[b, j])
     return column
 
 
 @vector_kernel
-def _joint(counts, total, d, a, b, densities, shown, largest):
-    """Sum over combinations of count times both densities.
+def _joint(counts, total, d, a, b, densities, squares, shown, largest):
+    """Sum over combinations of count times their joint density.
 
     Products of densities are float64: those of two far colours are below what float32 holds, and slow there.
     The component that the first pixel shows comes first, and none that is negligible after it; `largest` is that of
     the second pixel's densities.
     """
-    both = float(densities[a, shown]) * _with_all(counts, a, shown, d, densities, b)
+    both = float(densities[a, shown]) * _with_all(counts, a, shown, d, densities, squares, b)
     for i in range(counts.shape[1]):
         if i != shown and float(densities[a, i]) * largest * total > both * NEGLIGIBLE:
-            both += float(densities[a, i]) * _with_all(counts, a, i, d, densities, b)
+            both += float(densities[a, i]) * _with_all(counts, a, i, d, densities, squares, b)
     return both
 
 
@@ -62,7 +85,7 @@ def _alone(counts, d, a, densities, q, is_first):
 
 
 @vector_kernel
-def _partner_density(counts, totals, d, a, b, q, densities, peaks, shown, least):
+def _partner_density(counts, totals, d, a, b, q, densities, squares, peaks, shown, least):
     """P(c0, ci) = P(c0 | ci) P(ci), in which P(ci) is at least `least`; 1 where nothing is known.
 
     The pair's pixels are a and b, and q that of ci; `shown` is a's component. P(ci) is at least P(c0, ci) over the
@@ -71,7 +94,7 @@ def _partner_density(counts, totals, d, a, b, q, densities, peaks, shown, least)
     total = totals[d, a]
     if total == _0:
         return 1.0
-    both = _joint(counts, total, d, a, b, densities, shown, float(peaks[0, b])) / total
+    both = _joint(counts, total, d, a, b, densities, squares, shown, float(peaks[0, b])) / total
     if both >= least * float(peaks[0, a + b - q]):
         return max(both, LEAST)
     rare = max(float(_alone(counts, d, a, densities, q, q == a) / total), LEAST)
@@ -79,7 +102,7 @@ def _partner_density(counts, totals, d, a, b, q, densities, peaks, shown, least)
 
 
 @vector_kernel
-def _product(p, densities, peaks, shows, counts, totals, steps, partners, least, begin, end):
+def _product(p, densities, squares, peaks, shows, counts, totals, steps, partners, least, begin, end):
     """Of the joint densities with partners begin to end of pixel p.
 
     Mostly both pixels show one component much better than any other, and have been seen in that combination: then no
@@ -91,30 +114,31 @@ def _product(p, densities, peaks, shows, counts, totals, steps, partners, least,
         if partner >= 0:
             d, q = partner >> 1, p + steps[partner]
             a, b = min(p, q), max(p, q)
-            first, second, shown = float(peaks[0, a]), float(peaks[0, b]), np.int64(shows[a])
-            usual = counts[a, shown, d, np.int64(shows[b])] / totals[d, a]
-            joint = usual * first * second
+            first, second = float(peaks[0, a]), float(peaks[0, b])
+            shown, other = np.int64(shows[a]), np.int64(shows[b])
+            usual = counts[a, shown, d, other] / totals[d, a]
+            joint = usual * first * second * _together(squares[a, shown], squares[b, other])
             others = max(first * float(peaks[1, b]), float(peaks[1, a]) * second)
             if others <= joint * NEGLIGIBLE and usual * peaks[0, q] >= least and joint >= LEAST:
                 product *= joint
             else:
-                product *= _partner_density(counts, totals, d, a, b, q, densities, peaks, shown, least)
+                product *= _partner_density(counts, totals, d, a, b, q, densities, squares, peaks, shown, least)
     return product
 
 
 @parallel_kernel
-def _over_rows_scores(alone, densities, peaks, shown, counts, totals, steps, partners, least, width, out):
+def _over_rows_scores(alone, densities, squares, peaks, shown, counts, totals, steps, partners, least, width, out):
     most = partners.shape[1]
     for row in numba.prange(out.shape[0] // width):
         start = np.int64(row) * width
         for p in range(start, start + width):
             product = max(float(alone[p]), LEAST) * _product(
-                p, densities, peaks, shown, counts, totals, steps, partners, least, 0, min(most, 3)
+                p, densities, squares, peaks, shown, counts, totals, steps, partners, least, 0, min(most, 3)
             )
             score = -math.log(product)
             for begin in range(3, most, 4):  # a product of more might reach nought
                 score -= math.log(
-                    _product(p, densities, peaks, shown, counts, totals, steps, partners, least, begin,
+                    _product(p, densities, squares, peaks, shown, counts, totals, steps, partners, least, begin,
                              min(most, begin + 4))
                 )  # fmt: skip
             out[p] = score
@@ -268,12 +292,12 @@ def numbered(array, at):
     return array.reshape(array.shape[:at] + (-1,) + array.shape[at + 2 :])
 
 
-def pair_scores(alone, densities, peaks, shown, counts, totals, offsets, partners, limit, out):
+def pair_scores(alone, densities, squares, peaks, shown, counts, totals, offsets, partners, limit, out):
     """-log of (3.1) over evenly spread colours, nats.
 
     Parameters
     ----------
-    alone (H, W), densities (H, W, S), peaks (2, H, W) float32, shown (H, W) int8: as `mixture_look` fills them
+    alone (H, W), densities, squares (H, W, S), peaks (2, H, W) float32, shown (H, W) int8: as `mixture_look` fills them
     counts : (H, W, K, D, S) float32, own component, pair, the other's, and their sums totals (D, H, W) float32
     offsets : (D, 2) int64, (rows, columns) from a pixel to the second one of its pair d: that comes later by rows
     partners : (H, W, M) int8: numbers of each pixel's partners, -1 for none
@@ -282,9 +306,9 @@ def pair_scores(alone, densities, peaks, shown, counts, totals, offsets, partner
     """
     width = out.shape[1]
     _over_rows_scores(
-        alone.ravel(), numbered(densities, 0), numbered(peaks, 1), shown.ravel(), numbered(counts, 0),
-        numbered(totals, 1), partner_steps(offsets, width), numbered(partners, 0), np.float32(math.exp(-limit)), width,
-        out.ravel(),
+        alone.ravel(), numbered(densities, 0), numbered(squares, 0), numbered(peaks, 1), shown.ravel(),
+        numbered(counts, 0), numbered(totals, 1), partner_steps(offsets, width), numbered(partners, 0),
+        np.float32(math.exp(-limit)), width, out.ravel(),
     )  # fmt: skip
 
 

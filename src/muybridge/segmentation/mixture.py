@@ -86,6 +86,8 @@ class Look(NamedTuple):
 
     nearest: NDArray
     """(H, W) int8: the component that matches; -1 for none."""
+    squares: NDArray
+    """(H, W, MOST_SLOTS) float32: squared distances from each component."""
     densities: NDArray
     """(H, W, MOST_SLOTS) float32, of each component."""
     peaks: NDArray
@@ -135,8 +137,8 @@ class PixelMixtures:
         """What each pixel of a picture matches, and how well all components of the background explain it."""
         size = self.kept.shape
         out = Look(
-            np.empty(size, np.int8), np.zeros((*size, MOST_SLOTS), np.float32), np.empty((2, *size), np.float32),
-            np.empty(size, np.int8), np.empty(size, np.float32),
+            np.empty(size, np.int8), *(np.zeros((*size, MOST_SLOTS), np.float32) for _ in range(2)),
+            np.empty((2, *size), np.float32), np.empty(size, np.int8), np.empty(size, np.float32),
         )  # fmt: skip
         mixture_look(picture, self.weights, self.means, self.variances, self.kept, self._limit, *out)
         return out

@@ -155,8 +155,8 @@ class SpatialBackground:
         out = np.empty(picture.shape[:2], np.float32)
         look = self.mixtures.look(picture)
         pair_scores(
-            look.alone, look.densities, look.peaks, look.shown, self.counts, self.totals, OFFSETS, self.partners,
-            self.config.partner_limit, out,
+            look.alone, look.densities, look.squares, look.peaks, look.shown, self.counts, self.totals, OFFSETS,
+            self.partners, self.config.partner_limit, out,
         )  # fmt: skip
         return out, look.nearest
 
