@@ -11,10 +11,8 @@ blocks      also covariances between a pixel's channels
 full        also covariances between the two pixels
 
 Combinations and means are always those of the product. The last three differ in nothing but what of a covariance is
-learnt: it begins as the product's, and is learnt about these means, 1 / n at first and then at `pair_rate`. Far colours
-keep their order by the distance of both pixels together there, and by each one's in the product, where it is the only
-difference between `product` and `diagonal` that was found to matter. Prints false positives where 80 % of the
-foreground is found, per cent, and how long a judged picture takes.
+learnt: it begins as the product's, and is learnt about these means, 1 / n at first and then at `pair_rate`. Prints
+false positives where 80 % of the foreground is found, per cent, and how long a judged picture takes.
 """
 
 from __future__ import annotations
