@@ -136,9 +136,10 @@ class PixelMixtures:
     def look(self, picture: NDArray) -> Look:
         """What each pixel of a picture matches, and how well all components of the background explain it."""
         size = self.kept.shape
+        squares, densities = (np.zeros((*size, MOST_SLOTS), np.float32) for _ in range(2))
         out = Look(
-            np.empty(size, np.int8), *(np.zeros((*size, MOST_SLOTS), np.float32) for _ in range(2)),
-            np.empty((2, *size), np.float32), np.empty(size, np.int8), np.empty(size, np.float32),
+            np.empty(size, np.int8), squares, densities, np.empty((2, *size), np.float32), np.empty(size, np.int8),
+            np.empty(size, np.float32),
         )  # fmt: skip
         mixture_look(picture, self.weights, self.means, self.variances, self.kept, self._limit, *out)
         return out
