@@ -72,9 +72,9 @@ class SpatialConfig(ComponentsConfig):
     """beta_c of (3.6), 0..1: the share of the newest picture in the weights of a pair's combinations."""
     partners: int = 2
     """Pairs that a pixel is judged by, 0 to 8 (thesis: 2)."""
-    partner_limit: float = -8.0
-    """Nats against evenly spread colours: the most that a partner's own colour may count; infinite in the thesis. What
-    the background mostly shows counts -8 (noise of 7 grey values) to -12 (`sd_floor`)."""
+    partner_limit: float = -8.0 / 3.0
+    """Nats a channel against evenly spread colours: the most that a partner's own colour may count; infinite in the
+    thesis. What the background mostly shows counts -2.7 (noise of 7 grey values) to -3.9 (`sd_floor`)."""
     threshold: float = 0.0
     """Nats by which evenly spread colours explain a foreground pixel better, at least."""
     patience: int = 3600
@@ -155,9 +155,11 @@ class SpatialBackground:
         """(H, W) float32, the score; (H, W) int8, the component that each pixel matches."""
         out = np.empty(picture.shape[:2], np.float32)
         look = self.mixtures.look(picture)
+        # Densities of one channel are too low to bear the joint tail: people would be wider by 5 pixels.
+        squares = look.squares if picture.shape[2] > 1 else np.zeros_like(look.squares)
         pair_scores(
-            look.alone, look.densities, look.squares, look.peaks, look.shown, self.counts, self.totals, OFFSETS,
-            self.partners, self.config.partner_limit, out,
+            look.alone, look.densities, squares, look.peaks, look.shown, self.counts, self.totals, OFFSETS,
+            self.partners, self.config.partner_limit * picture.shape[2], out,
         )  # fmt: skip
         return out, look.nearest
 
