@@ -26,7 +26,7 @@ PLACE = (150.0, 170.0)
 COMES = Walker((40, 170), PLACE, 0, FALLS - 1)
 STAYS = Walker(PLACE, PLACE, FALLS, RISES - 1)
 GOES = Walker(PLACE, (260, 170), RISES, END)
-STAYS_STATE = states_from_boxes(STAYS.box(FALLS)[None])[0]  # type: ignore[index]
+STAYS_STATE = states_from_boxes(np.array([STAYS.box(FALLS)]))[0]
 PASSES = Walker((60, 200), (260, 200), FALLS + 2, RISES - 2, 1)
 
 

@@ -20,8 +20,8 @@ Differences from the paper:
 
 - A joint covariance is block-diagonal, its blocks being the (diagonal) covariances of the two pixels' components: the
   best joint match (3.4) is then the pair of best matches, and a joint density a product, but for its tail, which is
-  that of both distances together. The thesis updates 6 x 6 numbers for each of K x K combinations and pair, 0.5 GB at
-  320 x 240; what that gains is in docs/benchmarks.md.
+  that of both distances together (of colour; in grey pictures each has its own). The thesis updates 6 x 6 numbers for
+  each of K x K combinations and pair, 0.5 GB at 320 x 240; what that gains is in docs/benchmarks.md.
 - (3.6) as printed adds beta_c times two densities, and (3.5) takes nothing from the combinations that did not match, so
   that all weights grow to 1. Here the matched one gains `pair_rate`, 1 / n at first, and all others lose as much (2.5).
 - What is foreground is not learnt until it has been foreground for `patience` pictures; with `patience=0` everything is
