@@ -72,7 +72,7 @@ def _joint(image, means, kept, counts, totals, covariances, d, a, b):
     both, off = 0.0, np.empty(6)
     for i in range(counts.shape[2]):
         for j in range(counts.shape[2]):
-            count = counts[a[0], a[1], i, d, j]
+            count = counts[a[0], d, i, j, a[1]]
             if count > 0 and kept[a] >> i & 1 and kept[b] >> j & 1:
                 _offsets(image, means, a, i, b, j, off)
                 squared, root = _squared_and_root(covariances[a[0], a[1], d, i, j], off)
@@ -99,8 +99,8 @@ def _scores(image, means, kept, alone, densities, counts, totals, covariances, p
                 rare = 0.0
                 for i in range(counts.shape[2]):
                     for j in range(counts.shape[2]):
-                        own = densities[q[0], q[1], j if sign > 0 else i]
-                        rare += counts[a[0], a[1], i, d, j] * own / totals[d, a[0], a[1]]
+                        own = densities[q[0], j if sign > 0 else i, q[1]]
+                        rare += counts[a[0], d, i, j, a[1]] * own / totals[d, a[0], a[1]]
                 rare = max(rare, 1e-37)
                 both = max(_joint(image, means, kept, counts, totals, covariances, d, a, b), 1e-60)
                 out[y, x] -= math.log(both * (least / rare if rare < least else 1.0))
@@ -123,14 +123,14 @@ def _update(image, means, variances, matched, fresh, counts, covariances, kind, 
                         if not new and not hit:
                             continue
                         joint = covariances[y, x, d, i, j]
-                        if new or counts[y, x, i, d, j] <= 1.0:
+                        if new or counts[y, d, i, j, x] <= 1.0:
                             joint[:] = 0.0
                             for c in range(3):
                                 joint[c, c] = variances[y, i, c, x]
                                 joint[3 + c, 3 + c] = variances[v, j, c, u]
                         if hit:
                             _offsets(image, means, (y, x), i, (v, u), j, off)
-                            share = max(rate, 1.0 / (counts[y, x, i, d, j] + PRIOR))
+                            share = max(rate, 1.0 / (counts[y, d, i, j, x] + PRIOR))
                             for r in range(6):
                                 for c in range(6):
                                     joint[r, c] += share * (off[r] * off[c] * kind[r, c] - joint[r, c])
@@ -153,7 +153,7 @@ class FullBackground(SpatialBackground):
     def _judged(self, picture: NDArray) -> tuple[NDArray, NDArray]:
         out, look, of = np.empty(picture.shape[:2], np.float32), self.mixtures.look(picture), self.mixtures
         _scores(picture, of.means, of.kept, look.alone, look.densities, self.counts, self.totals, self.covariances,
-                self.partners, math.exp(-self.config.partner_limit), out)  # fmt: skip
+                self.partners, math.exp(-self.config.partner_limit * picture.shape[2]), out)  # fmt: skip
         return out, look.nearest
 
     def _learn(self, picture: NDArray, nearest: NDArray, learnt: NDArray) -> None:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from muybridge._kernels.deviations import pooled_scores, slot_deviations
-from muybridge._kernels.mixture import MOST_SLOTS, mixture_look, mixture_nearest, mixture_scores, mixture_update
+from muybridge._kernels.mixture import mixture_look, mixture_nearest, mixture_scores, mixture_update
 from muybridge._kernels.pairs import choose_partners, pair_scores, pair_update
 from muybridge.segmentation.spatial import OFFSETS
 from reference import mixture as literal
@@ -52,10 +52,9 @@ class Mixtures:
             assert found == (matched[y, x], fresh[y, x])
 
     def look(self) -> tuple[np.ndarray, ...]:
-        """As `mixture_look` fills them: nearest, squares, densities, peaks, shown, alone."""
-        slots = (np.zeros((H, W, MOST_SLOTS), np.float32) for _ in range(2))
-        out = (np.empty((H, W), np.int8), *slots, np.empty((2, H, W), np.float32),
-               np.empty((H, W), np.int8), np.empty((H, W), np.float32))  # fmt: skip
+        """As `mixture_look` fills them: nearest, squares, heights, densities, alone."""
+        slots = (np.empty((H, K, W), np.float32) for _ in range(3))
+        out = (np.empty((H, W), np.int8), *slots, np.empty((H, W), np.float32))
         mixture_look(self.image, self.weights, self.means, self.variances, self.kept, LIMIT, *out)
         return out
 
@@ -81,7 +80,7 @@ def test_background_components() -> None:
 
 
 def test_densities_and_scores() -> None:
-    nearest, squares, found, peaks, shown, alone = MADE.look()
+    nearest, squares, heights, found, alone = MADE.look()
     scores, again = np.empty((H, W), np.float32), np.empty((H, W), np.int8)
     mixture_scores(MADE.image, MADE.weights, MADE.means, MADE.variances, MADE.kept, scores)
     mixture_nearest(MADE.image, MADE.weights, MADE.means, MADE.variances, LIMIT, again)
@@ -91,18 +90,17 @@ def test_densities_and_scores() -> None:
         wanted = kept * literal.densities(
             MADE.image[y, x].astype(float), MADE.means[y, :, :, x], MADE.variances[y, :, :, x]
         )
-        np.testing.assert_allclose(found[y, x, :K], wanted, rtol=SINGLE)
+        np.testing.assert_allclose(found[y, :, x], wanted, rtol=SINGLE)
+        np.testing.assert_allclose(heights[y, :, x], kept * literal.heights(MADE.variances[y, :, :, x]), rtol=SINGLE)
         far = literal.distances(MADE.image[y, x].astype(float), MADE.means[y, :, :, x], MADE.variances[y, :, :, x])
-        np.testing.assert_allclose(squares[y, x, :K], far, rtol=SINGLE)
-        np.testing.assert_array_equal(peaks[:, y, x], np.sort(found[y, x])[:-3:-1])
-        assert found[y, x, shown[y, x]] == peaks[0, y, x]
+        np.testing.assert_allclose(squares[y, :, x], far, rtol=SINGLE)
         np.testing.assert_allclose(alone[y, x], MADE.weights[y, :, x] @ wanted, rtol=SINGLE, atol=literal.LEAST)
         np.testing.assert_allclose(scores[y, x], -np.log(max(MADE.weights[y, :, x] @ wanted, literal.LEAST)), atol=1e-3)
 
 
 def learnt_pairs(growth_rate: float, pictures: int | None = None) -> tuple[np.ndarray, np.ndarray]:
     counts, totals = (
-        np.zeros((H, W, K, len(OFFSETS), MOST_SLOTS), np.float32),
+        np.zeros((H, len(OFFSETS), K, K, W), np.float32),
         np.zeros((len(OFFSETS), H, W), np.float32),
     )
     for matched, fresh in MADE.pairs[:pictures]:
@@ -116,7 +114,7 @@ def matrix_of(counts: np.ndarray, n: int, y: int, x: int) -> tuple[np.ndarray, t
     qy, qx = y + sign * down, x + sign * right
     if not (0 <= qy < H and 0 <= qx < W):
         return None
-    return (counts[y, x, :, d, :K] if sign > 0 else counts[qy, qx, :, d, :K].T).astype(float), (qy, qx)
+    return (counts[y, d, :, :, x] if sign > 0 else counts[qy, d, :, :, qx].T).astype(float), (qy, qx)
 
 
 def test_counts_are_of_components_that_matched_together_since_they_were_made() -> None:
@@ -131,7 +129,7 @@ def test_counts_are_of_components_that_matched_together_since_they_were_made() -
             wanted[:, fresh[y + down, x + right]] = 0
         if matched[y, x] >= 0 and matched[y + down, x + right] >= 0:
             wanted[matched[y, x], matched[y + down, x + right]] += 1
-    np.testing.assert_array_equal(counts[y, x, :, d, :K], wanted)
+    np.testing.assert_array_equal(counts[y, d, :, :, x], wanted)
     assert totals[d, y, x] == wanted.sum() > 10
 
 
@@ -141,52 +139,55 @@ def test_scores_and_partners(pictures: int) -> None:
     counts, totals = learnt_pairs(0.02, pictures)
     information, partners = np.zeros((len(OFFSETS), H, W), np.float32), np.zeros((H, W, 2), np.int8)
     choose_partners(counts, OFFSETS, 0, 1, information, partners)
-    _, squares, found, peaks, shown, alone = MADE.look()
+    _, squares, heights, found, alone = MADE.look()
     out = np.empty((H, W), np.float32)
-    pair_scores(alone, found, squares, peaks, shown, counts, totals, OFFSETS, partners, 4.0, out)
+
+    def side(y: int, x: int) -> tuple[np.ndarray, np.ndarray]:
+        return squares[y, :, x].astype(float), heights[y, :, x].astype(float)
+
+    pair_scores(alone, squares, heights, found, MADE.kept, counts, totals, OFFSETS, partners, 4.0, out)
     for y, x in np.ndindex(H, W):
         candidates = {}
         for n in range(2 * len(OFFSETS)):
             pair = matrix_of(counts, n, y, x)
             if pair is not None:
-                far = tuple(squares[place][:K].astype(float) for place in ((y, x), pair[1]))
-                candidates[n] = pair[0], found[pair[1]][:K].astype(float), far
+                candidates[n] = pair[0], *(side(*place) for place in ((y, x), pair[1]))
         gain = {
-            n: literal.mutual_information(matrix) if matrix.any() else 0.0 for n, (matrix, _, _) in candidates.items()
+            n: literal.mutual_information(matrix) if matrix.any() else 0.0 for n, (matrix, *_) in candidates.items()
         }
         chosen = [int(n) for n in partners[y, x] if n >= 0]
         assert len(chosen) == min(2, len(candidates))
         for rank, n in enumerate(sorted(gain.values(), reverse=True)[: len(chosen)]):
             np.testing.assert_allclose(gain[chosen[rank]], n, atol=1e-5)
-        own = found[y, x, :K].astype(float)
+        own = found[y, :, x].astype(float)
         wanted = -np.log(max(MADE.weights[y, :, x] @ own, literal.LEAST))
         known = [n for n in chosen if candidates[n][0].any()]
-        wanted += sum(literal.joint(candidates[n][0], own, *candidates[n][1:], 4.0) for n in known)
+        wanted += sum(literal.joint(*candidates[n], 4.0) for n in known)
         np.testing.assert_allclose(out[y, x], wanted, rtol=1e-4, atol=1e-3)
 
 
 def test_the_newest_picture_has_one_share_in_all_and_later_the_rate() -> None:
     """With a rate of 1 / 11 from 10 pictures on."""
-    counts, totals = np.zeros((6, 1, K, 1, MOST_SLOTS), np.float32), np.zeros((1, 6, 1), np.float32)
+    counts, totals = np.zeros((6, 1, K, K, 1), np.float32), np.zeros((1, 6, 1), np.float32)
     offset, matched, fresh = np.array([(5, 0)]), np.full((6, 1), 2, np.int8), np.full((6, 1), -1, np.int8)
     for number in range(1, 31):
         pair_update(counts, totals, offset, matched, fresh, 1 / 11)
-        np.testing.assert_allclose(totals[0, 0, 0], counts[0, 0, 2, 0, 2], rtol=1e-5)
+        np.testing.assert_allclose(totals[0, 0, 0], counts[0, 0, 2, 2, 0], rtol=1e-5)
         assert number > 10 or totals[0, 0, 0] == number
     matched[5] = 3
     pair_update(counts, totals, offset, matched, fresh, 1 / 11)
-    np.testing.assert_allclose(counts[0, 0, 2, 0, 3] / totals[0, 0, 0], 1 / 11, rtol=1e-3)
+    np.testing.assert_allclose(counts[0, 0, 2, 3, 0] / totals[0, 0, 0], 1 / 11, rtol=1e-3)
 
 
 def test_counts_that_have_grown_large_are_made_small_again() -> None:
     """A rate of 1 / 2 doubles them at each picture; shares stay."""
-    counts, totals = np.zeros((6, 1, K, 1, MOST_SLOTS), np.float32), np.zeros((1, 6, 1), np.float32)
+    counts, totals = np.zeros((6, 1, K, K, 1), np.float32), np.zeros((1, 6, 1), np.float32)
     matched, fresh = np.full((6, 1), 2, np.int8), np.full((6, 1), -1, np.int8)
     for number in range(300):
         matched[5] = number % 2
         pair_update(counts, totals, np.array([(5, 0)]), matched, fresh, 1 / 2)
         assert 0 < totals[0, 0, 0] < 1e31
-    np.testing.assert_allclose(counts[0, 0, 2, 0, :2] / totals[0, 0, 0], [1 / 3, 2 / 3], rtol=1e-5)
+    np.testing.assert_allclose(counts[0, 0, 2, :2, 0] / totals[0, 0, 0], [1 / 3, 2 / 3], rtol=1e-5)
 
 
 @pytest.mark.parametrize("pictures", PICTURES)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-TAIL, LEAST = 16.0, 1e-37
+TAIL, FARTHEST, LEAST = 16.0, 2500.0, 1e-37
 
 
 def distances(colour: np.ndarray, means: np.ndarray, variances: np.ndarray) -> np.ndarray:
@@ -18,8 +18,12 @@ def distances(colour: np.ndarray, means: np.ndarray, variances: np.ndarray) -> n
 
 def densities(colour: np.ndarray, means: np.ndarray, variances: np.ndarray) -> np.ndarray:
     """(K,): (2.2), with a tail that falls more slowly."""
-    squared = fallen(distances(colour, means, variances), TAIL)
-    return np.exp(-squared / 2) * np.prod(256 / np.sqrt(2 * np.pi * variances), axis=1)
+    return heights(variances) * np.exp(-fallen(distances(colour, means, variances), TAIL) / 2)
+
+
+def heights(variances: np.ndarray) -> np.ndarray:
+    """(K,): the same at the means."""
+    return np.prod(256 / np.sqrt(2 * np.pi * variances), axis=1)
 
 
 def background_slots(weights: np.ndarray, variances: np.ndarray, portion: float) -> set[int]:
@@ -66,17 +70,19 @@ def fallen(squared: np.ndarray, tail: float) -> np.ndarray:
     return np.where(squared > tail, tail * (1 + np.log(np.maximum(squared, tail) / tail)), squared)
 
 
-def joint(
-    counts: np.ndarray, own: np.ndarray, other: np.ndarray, squares: tuple[np.ndarray, np.ndarray], limit: float
-) -> float:
+Side = tuple[np.ndarray, np.ndarray]
+"""How far (K,) components are from a colour, squared, and their densities at the means; 0 of what is no background."""
+
+
+def joint(counts: np.ndarray, own: Side, other: Side, limit: float) -> float:
     """-log of P(c0, ci) (3.2), -log P(ci) counting at most `limit`; counts (K, K): own component, the other's.
 
-    own, other (K,) densities, and their squared distances: the tail of a joint density begins where both together are
-    2 TAIL away.
+    The tail of a joint density begins where both pixels together are 2 TAIL away.
     """
     weights = counts / counts.sum()
-    ratio = fallen(np.add.outer(*squares), 2 * TAIL) - np.add.outer(*(fallen(one, TAIL) for one in squares))
-    both, alone = own @ (weights * np.exp(-ratio / 2)) @ other, weights.sum(axis=0) @ other
+    away = np.minimum(np.add.outer(own[0], other[0]), FARTHEST)
+    both = own[1] @ (weights * np.exp(-fallen(away, 2 * TAIL) / 2)) @ other[1]
+    alone = weights.sum(axis=0) @ (other[1] * np.exp(-fallen(other[0], TAIL) / 2))
     excess = -np.log(max(alone, LEAST)) - limit
     return float(-np.log(max(both, LEAST)) - max(excess, 0.0))
 

@@ -75,7 +75,7 @@ def _surprise(counts, totals, offsets, partner, deviations, match, limit, y, x, 
         return _0
     together, times = _0, _0
     for i in range(deviations.shape[1]):
-        count = counts[qy, qx, shown, d, i] if across else counts[y, x, i, d, shown]
+        count = counts[qy, d, shown, i, qx] if across else counts[y, d, i, shown, x]
         times += count
         if i == k:
             together = count

@@ -23,7 +23,9 @@ MOST_SLOTS = 8
 """Bits of `kept`."""
 LEAST = 1e-37
 """The least density whose logarithm is taken."""
-_TAIL = np.float32(TAIL)
+FARTHEST = 2500.0
+"""Summed squared distance of two pixels, at which their joint density has fallen by 86 nats: as far as float32 goes."""
+_TAIL, _2_TAIL, _FARTHEST = np.float32(TAIL), np.float32(2.0 * TAIL), np.float32(FARTHEST)
 _PER_RANGE_SQUARED = np.float32(2.0 * math.pi / (256.0 * 256.0))
 _0, _1 = np.float32(0.0), np.float32(1.0)
 _E0, _E1, _E2, _E3, _E4, _E5, _E6 = (
@@ -34,11 +36,28 @@ _E0, _E1, _E2, _E3, _E4, _E5, _E6 = (
 
 
 @vector_kernel
+def _root(squared, tail):
+    """exp(-d^2 / tail) of a squared distance, up to tail; tail / d^2 / e from there on."""
+    u = min(squared, tail) / -tail
+    root = _E0 + u * (_E1 + u * (_E2 + u * (_E3 + u * (_E4 + u * (_E5 + u * _E6)))))
+    return root * (tail / max(squared, tail))
+
+
+@vector_kernel
 def _fall(squared):
     """exp(-d^2 / 2) of a squared distance, up to TAIL."""
-    u = min(squared, _TAIL) / -_TAIL
-    root = _E0 + u * (_E1 + u * (_E2 + u * (_E3 + u * (_E4 + u * (_E5 + u * _E6)))))
-    fall = root * (_TAIL / max(squared, _TAIL))
+    fall = _root(squared, _TAIL)
+    fall *= fall
+    fall *= fall
+    return fall * fall
+
+
+@vector_kernel
+def fall_together(squared):
+    """Of the summed squared distances of two pixels: exp(-d^2 / 2) up to 2 TAIL, falling with its 16th power from there
+    on; no more beyond FARTHEST."""
+    fall = _root(min(squared, _FARTHEST), _2_TAIL)
+    fall *= fall
     fall *= fall
     fall *= fall
     return fall * fall
@@ -74,22 +93,29 @@ def _times_variances(variances, out):
 
 
 @vector_kernel
-def _fallen(distances, bits, k, out):
+def _over_root(bits, k, out):
     for x in range(out.shape[0]):
-        counts = np.float32(bits[x] >> np.uint8(k) & 1)
-        out[x] = counts * _fall(distances[x]) / np.float32(math.sqrt(out[x]))
+        out[x] = np.float32(bits[x] >> np.uint8(k) & 1) / np.float32(math.sqrt(out[x]))
 
 
 @vector_kernel
-def _slot_densities(distances, variances, bits, k, out):
-    """Densities (2.2) in component k, over that of colours spread evenly over 0..255; 0 where it does not count.
+def _slot_heights(variances, bits, k, out):
+    """Densities (2.2) at the means of component k, over that of colours spread evenly over 0..255; 0 where it does not
+    count.
 
-    distances (W,), variances (C, W), bits (W,) of `kept`, out (W,)
+    variances (C, W), bits (W,) of `kept`, out (W,)
     """
     out[:] = _1
     for c in range(variances.shape[0]):
         _times_variances(variances[c], out)
-    _fallen(distances, bits, k, out)
+    _over_root(bits, k, out)
+
+
+@vector_kernel
+def _slot_densities(distances, heights, out):
+    """The same at these squared distances; all (W,)."""
+    for x in range(out.shape[0]):
+        out[x] = heights[x] * _fall(distances[x])
 
 
 @vector_kernel
@@ -98,20 +124,6 @@ def _keep_nearer(distances, weights, k, least, nearest):
         nearer = weights[x] > _0 and distances[x] < least[x]
         least[x] = distances[x] if nearer else least[x]
         nearest[x] = k if nearer else nearest[x]
-
-
-@vector_kernel
-def _keep_density(row, distances, weights, k, squares, densities, first, second, shown, alone):
-    """What a row (W,) of densities in component k adds to what is kept of all: the arguments of `mixture_look`."""
-    for x in range(shown.shape[0]):
-        density = row[x]
-        shown[x] = k if density > first[x] else shown[x]
-        second[x] = max(second[x], min(density, first[x]))
-        first[x] = max(first[x], density)
-        alone[x] += weights[x] * density
-    for x in range(shown.shape[0]):
-        densities[x, k] = row[x]
-        squares[x, k] = distances[x]
 
 
 @parallel_kernel
@@ -128,24 +140,26 @@ def _over_rows_nearest(image, weights, means, variances, limit, nearest):
             _keep_nearer(distances, weights[y, k], np.int8(k), least, nearest[y])
 
 
+@vector_kernel
+def _add_weighted(weights, density, alone):
+    for x in range(alone.shape[0]):
+        alone[x] += weights[x] * density[x]
+
+
 @parallel_kernel
-def _over_rows_look(image, weights, means, variances, kept, limit, nearest, squares, densities, peaks, shown, alone):
+def _over_rows_look(image, weights, means, variances, kept, limit, nearest, squares, heights, densities, alone):
     height, slots, width = weights.shape
     for row in numba.prange(height):
         y = np.int64(row)
-        colours, density = np.empty((image.shape[2], width), np.float32), np.empty(width, np.float32)
-        distances, least = np.empty(width, np.float32), np.full(width, limit)
+        colours, least = np.empty((image.shape[2], width), np.float32), np.full(width, limit)
         row_colours(image, y, colours)
-        nearest[y, :], shown[y, :] = -1, 0
-        densities[y, :], peaks[0, y, :], peaks[1, y, :], alone[y, :] = _0, _0, _0, _0
+        nearest[y, :], alone[y, :] = -1, _0
         for k in range(slots):
-            _slot_distances(colours, means[y, k], variances[y, k], distances)
-            _keep_nearer(distances, weights[y, k], np.int8(k), least, nearest[y])
-            _slot_densities(distances, variances[y, k], kept[y], k, density)
-            _keep_density(
-                density, distances, weights[y, k], np.int8(k), squares[y], densities[y], peaks[0, y], peaks[1, y],
-                shown[y], alone[y],
-            )  # fmt: skip
+            _slot_distances(colours, means[y, k], variances[y, k], squares[y, k])
+            _keep_nearer(squares[y, k], weights[y, k], np.int8(k), least, nearest[y])
+            _slot_heights(variances[y, k], kept[y], k, heights[y, k])
+            _slot_densities(squares[y, k], heights[y, k], densities[y, k])
+            _add_weighted(weights[y, k], densities[y, k], alone[y])
 
 
 @parallel_kernel
@@ -153,14 +167,14 @@ def _over_rows_scores(image, weights, means, variances, kept, out):
     height, slots, width = weights.shape
     for row in numba.prange(height):
         y = np.int64(row)
-        colours, density = np.empty((image.shape[2], width), np.float32), np.empty(width, np.float32)
-        distances, alone = np.empty(width, np.float32), np.zeros(width, np.float32)
+        colours, alone = np.empty((image.shape[2], width), np.float32), np.zeros(width, np.float32)
+        distances, density = np.empty(width, np.float32), np.empty(width, np.float32)
         row_colours(image, y, colours)
         for k in range(slots):
             _slot_distances(colours, means[y, k], variances[y, k], distances)
-            _slot_densities(distances, variances[y, k], kept[y], k, density)
-            for x in range(width):
-                alone[x] += weights[y, k, x] * density[x]
+            _slot_heights(variances[y, k], kept[y], k, density)
+            _slot_densities(distances, density, density)
+            _add_weighted(weights[y, k], density, alone)
         for x in range(width):
             out[y, x] = -math.log(max(float(alone[x]), LEAST))
 
@@ -280,20 +294,19 @@ def mixture_nearest(image, weights, means, variances, limit, nearest):
     _over_rows_nearest(image, weights, means, variances, np.float32(limit), nearest)
 
 
-def mixture_look(image, weights, means, variances, kept, limit, nearest, squares, densities, peaks, shown, alone):
+def mixture_look(image, weights, means, variances, kept, limit, nearest, squares, heights, densities, alone):
     """The same, and densities of the background's components over that of colours spread evenly over 0..255.
 
     Parameters
     ----------
     kept : (H, W) uint8, bits of the components that count
-    squares : (H, W, S) float32, filled up to K, S = MOST_SLOTS: squared Mahalanobis distances
-    densities : (H, W, S) float32, filled; 0 where a component does not count
-    peaks : (2, H, W) float32, filled: the largest density of a pixel, and the second
-    shown : (H, W) int8, filled: the component of the largest
+    squares : (H, K, W) float32, filled: squared Mahalanobis distances
+    heights : (H, K, W) float32, filled: densities at the means; 0 where a component does not count
+    densities : (H, K, W) float32, filled; 0 where a component does not count
     alone : (H, W) float32, filled: the density (2.1) of the mixture
     """
     _over_rows_look(
-        image, weights, means, variances, kept, np.float32(limit), nearest, squares, densities, peaks, shown, alone
+        image, weights, means, variances, kept, np.float32(limit), nearest, squares, heights, densities, alone
     )
 
 

@@ -87,13 +87,11 @@ class Look(NamedTuple):
     nearest: NDArray
     """(H, W) int8: the component that matches; -1 for none."""
     squares: NDArray
-    """(H, W, MOST_SLOTS) float32: squared distances from each component."""
+    """(H, K, W) float32: squared distances from each component."""
+    heights: NDArray
+    """(H, K, W) float32: densities at the means; 0 of what is no background."""
     densities: NDArray
-    """(H, W, MOST_SLOTS) float32, of each component."""
-    peaks: NDArray
-    """(2, H, W) float32: the largest of them, and the second."""
-    shown: NDArray
-    """(H, W) int8: the component of the largest."""
+    """(H, K, W) float32, of each component."""
     alone: NDArray
     """(H, W) float32: (2.1), all by their weights."""
 
@@ -136,11 +134,8 @@ class PixelMixtures:
     def look(self, picture: NDArray) -> Look:
         """What each pixel of a picture matches, and how well all components of the background explain it."""
         size = self.kept.shape
-        squares, densities = (np.zeros((*size, MOST_SLOTS), np.float32) for _ in range(2))
-        out = Look(
-            np.empty(size, np.int8), squares, densities, np.empty((2, *size), np.float32), np.empty(size, np.int8),
-            np.empty(size, np.float32),
-        )  # fmt: skip
+        squares, heights, densities = (np.empty_like(self.weights) for _ in range(3))
+        out = Look(np.empty(size, np.int8), squares, heights, densities, np.empty(size, np.float32))
         mixture_look(picture, self.weights, self.means, self.variances, self.kept, self._limit, *out)
         return out
 

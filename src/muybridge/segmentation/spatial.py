@@ -45,7 +45,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from muybridge._kernels.mixture import MOST_SLOTS
 from muybridge._kernels.pairs import choose_partners, pair_scores, pair_update
 from muybridge.errors import InputError
 from muybridge.segmentation.cleaning import beside, close_open
@@ -104,8 +103,8 @@ class SpatialBackground:
     Attributes
     ----------
     mixtures : PixelMixtures
-    counts : (H, W, K, D, MOST_SLOTS) float32, own component, pair, the other's; and their sums totals (D, H, W): pair
-        d of a pixel is the one at OFFSETS[d]
+    counts : (H, D, K, K, W) float32, pair, own component, the other's; and their sums totals (D, H, W): pair d of a
+        pixel is the one at OFFSETS[d]
     partners : (H, W, M) int8: 2 d for the neighbour at OFFSETS[d], 2 d + 1 for the one opposite, -1 for none
     """
 
@@ -114,7 +113,7 @@ class SpatialBackground:
         height, width = shape[:2]
         self.mixtures = PixelMixtures(shape, self.config)
         slots = self.config.components
-        self.counts = np.zeros((height, width, slots, len(OFFSETS), MOST_SLOTS), np.float32)
+        self.counts = np.zeros((height, len(OFFSETS), slots, slots, width), np.float32)
         self.totals = np.zeros((len(OFFSETS), height, width), np.float32)
         self.partners = np.full((height, width, self.config.partners), -1, np.int8)
         self._information = np.zeros_like(self.totals)
@@ -155,10 +154,11 @@ class SpatialBackground:
         """(H, W) float32, the score; (H, W) int8, the component that each pixel matches."""
         out = np.empty(picture.shape[:2], np.float32)
         look = self.mixtures.look(picture)
-        # Densities of one channel are too low to bear the joint tail: people would be wider by 5 pixels.
-        squares = look.squares if picture.shape[2] > 1 else np.zeros_like(look.squares)
+        squares, heights = look.squares, look.heights
+        if picture.shape[2] == 1:  # densities too low to bear the joint tail: people would be wider by 5 pixels
+            squares, heights = np.zeros_like(squares), look.densities
         pair_scores(
-            look.alone, look.densities, squares, look.peaks, look.shown, self.counts, self.totals, OFFSETS,
+            look.alone, squares, heights, look.densities, self.mixtures.kept, self.counts, self.totals, OFFSETS,
             self.partners, self.config.partner_limit * picture.shape[2], out,
         )  # fmt: skip
         return out, look.nearest
