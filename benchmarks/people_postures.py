@@ -1,12 +1,12 @@
 """Whether somebody who goes down and comes up again, among people who walk by, is followed on.
 
-    python benchmarks/people_postures.py [--motions crouch bend lie] [--seeds 9302 9303 9304 9305] [--down]
+    python benchmarks/people_postures.py [--motions crouch bend lie] [--seeds 9302 9303 9304 9305] [--upright]
 
 They walk in, go down where they stop (crouch, bend, or fall and lie), stay, get up and walk out. Prints for each
 rendered hall how far down they went, the frames in which they were below 85 % of their height, the share of those in
 which a box overlaps theirs by half or more, its mean overlap then and while they are upright, the identities that they
 had, and the share of the frames down in which a second box lay on them. The clip is all that is known of the hall. With
---down boxes may leave the size of somebody who stands.
+--upright boxes keep the size of somebody who stands.
 """
 
 from __future__ import annotations
@@ -145,9 +145,9 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--motions", nargs="+", default=list(STAYS), choices=list(STAYS))
     parser.add_argument("--seeds", type=int, nargs="+", default=[9302, 9303, 9304, 9305])
-    parser.add_argument("--down", action="store_true", help="tracker.down=true")
+    parser.add_argument("--upright", action="store_true", help="tracker.down=false")
     arguments = parser.parse_args()
-    config = PeopleConfig().with_settings([f"tracker.down={str(arguments.down).lower()}"])
+    config = PeopleConfig().with_settings([f"tracker.down={str(not arguments.upright).lower()}"])
     for kind in arguments.motions:
         for seed in arguments.seeds:
             scene = hall(kind, seed)

@@ -20,7 +20,7 @@ from muybridge.people.scene import Scene
 from muybridge.people.tracker import PeopleTracker, TrackerConfig
 from people.made import EMPTY, SMALL, known, tracked
 
-LOW = replace(SMALL, down=True)
+UPRIGHT = replace(SMALL, down=False)
 FALLS, RISES, END = 30, 70, 90
 PLACE = (150.0, 170.0)
 COMES = Walker((40, 170), PLACE, 0, FALLS - 1)
@@ -54,7 +54,7 @@ def shown(frame: int, others: list[Walker]) -> tuple[np.ndarray, np.ndarray, np.
     return picture, mask | theirs, box
 
 
-def followed(others: list[Walker], config: TrackerConfig = LOW) -> tuple[PeopleTracker, np.ndarray, list[int]]:
+def followed(others: list[Walker], config: TrackerConfig = SMALL) -> tuple[PeopleTracker, np.ndarray, list[int]]:
     """The tracker, and of every frame the best overlap with who goes down, and whose box that is."""
     tracker = PeopleTracker(Scene(EMPTY, known().ground, known().silhouette), config, frame_rate=10.0)
     true = []
@@ -85,7 +85,7 @@ class TestFollowed:
 
     def test_with_the_size_of_a_standing_person_they_are_not(self):
         """The control: 22 x 62 across 62 x 22 is at best 22 x 22 of 2244 pixels, 0.22."""
-        _, best, _ = followed([], SMALL)
+        _, best, _ = followed([], UPRIGHT)
         assert best[FALLS + 2 : RISES].max() < 0.5
 
     def test_nothing_is_learnt_of_them_meanwhile(self, monkeypatch):
@@ -108,14 +108,14 @@ class TestFollowed:
         monkeypatch.setattr("muybridge.people.down._become", lambda *arguments: went.append(arguments))
         mask = np.zeros((HEIGHT, WIDTH), bool)
         mask[{"pole": (slice(None), slice(150, 170)), "wall": (slice(140, 175), slice(130, 320))}[hides]] = True
-        tracked([Walker((30, 170), (290, 170), 0, 69)], 70, mask, LOW)
+        tracked([Walker((30, 170), (290, 170), 0, 69)], 70, mask)
         assert not went
 
     def test_nor_who_is_seen_for_too_short_to_know_how_tall_they_are(self, monkeypatch):
         """The first 1.5 s of somebody who is 0.6 of the usual height."""
         went = []
         monkeypatch.setattr("muybridge.people.down._become", lambda *arguments: went.append(arguments))
-        tracked([Walker((30, 170), (290, 170), 0, 69, stature=0.6)], 15, config=LOW)
+        tracked([Walker((30, 170), (290, 170), 0, 69, stature=0.6)], 15)
         assert not went
 
 

@@ -59,7 +59,7 @@ class TrackerConfig:
     foreground: ForegroundConfig = ForegroundConfig()
     identity: IdentityConfig = IdentityConfig()
     parts: PartConfig = PartConfig()
-    down: bool = False  # whether boxes leave the size of a standing person where the foreground is clearly lower
+    down: bool = True  # whether boxes leave the size of a standing person where the foreground is clearly lower
     held: bool = True  # parts are one state on the body; false: each goes where its colours are, as in the paper
     counts: CountConfig = CountConfig()
     blobs: BlobConfig = BlobConfig()  # where the ground's scale is not known

@@ -195,14 +195,14 @@ class _Run:
 
     def _write(self, writer: RunWriter, diagnostics: DiagnosticsWriter, record: Any) -> None:
         index, seconds = int(record["frame"]), float(record["time_s"])
-        writer.write(index, seconds, record["joints"], record["sd"], record["pose"])
         status = STATUSES[int(record["status"])]
-        diagnostics.write(index, seconds, status, float(record["ess"]), float(record["acceptance"]), record["costs"])
-        self.frames += 1
+        self.frames += 1  # before the tables: whoever sees a row there, and interrupts, has a summary
         self.evaluations += int(record["evaluations"])
         self.lost += status == LOST
         self.last_status = status
         self.milliseconds.append(float(record["ms"]))
+        writer.write(index, seconds, record["joints"], record["sd"], record["pose"])
+        diagnostics.write(index, seconds, status, float(record["ess"]), float(record["acceptance"]), record["costs"])
 
     def _rng(self, frame: int, purpose: int) -> np.random.Generator:
         """A generator of its own for every frame: results depend on neither interruptions nor threads."""
