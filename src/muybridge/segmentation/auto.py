@@ -1,16 +1,14 @@
 """The Gaussian where the background is calm, pairs of pixels where it changes: decided at each pixel, from what it saw.
 
 Zhao (2009, 6.1) finds a single Gaussian better in calm places and the spatial model better where the background
-changes, and leaves the choice to future work. Here the mixture of each pixel is the evidence. Where one component holds
-`portion` of the weight, that Gaussian judges, by its largest deviation over the channels, as the `gaussian` model
-does. Where there are several, each is asked, and its squared deviation is raised by twice -log P(k | ki) for each
-partner, as a Gaussian's log density is: a component counts less that was not seen with the one, ki, that the partner
-shows now. The least is the pixel's deviation a.
+changes, and leaves the choice to future work. Here both judge. The spatial model's score (3.1), of 1 + M densities, is
+taken for the deviation at which each of them would have fallen as far. Where one look holds `calm` of a pixel's weight,
+its Gaussian (2.3, 2.4) has a deviation too, the largest over the channels, and the larger of the two counts, in
+standard deviations.
 
-The largest channel tells people from shadows better than sums over channels do; pairs of pixels tell limbs from wide
-shadows better than pixels by themselves. So both have a say: the spatial model's score (3.1), of 1 + M densities, is
-taken for the deviation b at which each of them would have fallen as far, and the score is the geometric mean of a and
-b, in standard deviations.
+The Gaussian is that of the pixel's heaviest component as the scene was learnt. From then on its mean follows what is
+learnt of the background, and its spread stays: what people leave behind in a mixture, their shadows and whoever stood
+there, it does not take in. Where foreground is learnt, as a door that was opened, it goes over to that.
 """
 
 from __future__ import annotations
@@ -21,31 +19,46 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from muybridge._kernels.deviations import pooled_scores, slot_deviations
 from muybridge._kernels.mixture import TAIL
+from muybridge.errors import InputError
+from muybridge.segmentation.gaussian import GaussianBackground, GaussianConfig
 from muybridge.segmentation.pictures import learn_each
-from muybridge.segmentation.spatial import OFFSETS, SpatialBackground, SpatialConfig
+from muybridge.segmentation.spatial import SpatialBackground, SpatialConfig
 
 
 @dataclass(frozen=True)
 class AutoConfig(SpatialConfig):
-    """Settings of the spatial model, in whose place some mean another thing."""
+    """Settings of the spatial model, and of the Gaussian beside it."""
 
-    threshold: float = 4.0
+    threshold: float = 7.0
     """Standard deviations."""
-    surprise_limit: float = 4.0
-    """Nats: the most that one partner may count against a component."""
+    learnt_threshold: float = 0.0
+    """Nats of the spatial model's score, above which nothing is learnt as background: its own threshold."""
+    calm: float = 0.8
+    """Share of the weight that one look holds where the background is calm, 0..1; 0: everywhere."""
+    gaussian_weight: float = 1.25
+    """What a standard deviation of the Gaussian counts against one of the spatial model."""
     deviation_floor: float = 4.0
-    """Grey values: the least standard deviation by which a colour is judged, as of the Gaussian model."""
+    """Grey values: the least standard deviation of the Gaussian."""
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if not 0 <= self.calm <= 1:
+            raise InputError("auto background calm", expected="0 to 1", got=f"{self.calm:g}")
+        if not 0 <= self.gaussian_weight < np.inf:
+            raise InputError("auto background gaussian_weight", expected="0 or more", got=f"{self.gaussian_weight:g}")
+        if not 0 < self.deviation_floor < np.inf:
+            raise InputError("auto background deviation_floor", expected="above 0", got=f"{self.deviation_floor:g}")
 
 
 class AutoBackground(SpatialBackground):
-    """A spatial model whose calm pixels are judged by their Gaussian."""
+    """A spatial model, and the Gaussian of each pixel whose background is calm."""
 
     config: AutoConfig
 
     def __init__(self, shape: tuple[int, ...], config: AutoConfig | None = None) -> None:
         super().__init__(shape, config or AutoConfig())
+        self._gaussian: GaussianBackground | None = None  # none while the scene is learnt
 
     @classmethod
     def train(cls, pictures: Iterable[NDArray], config: SpatialConfig | None = None) -> AutoBackground:
@@ -54,23 +67,47 @@ class AutoBackground(SpatialBackground):
 
     @property
     def calm(self) -> NDArray:
-        """(H, W) bool: where the Gaussian judges."""
-        kept: NDArray = self.mixtures.kept
-        return (kept & (kept - 1)) == 0
+        """(H, W) bool: where the Gaussian has a say."""
+        heaviest: NDArray = self.mixtures.weights.max(axis=1)
+        return heaviest >= self.config.calm
 
-    def _judged(self, picture: NDArray) -> tuple[NDArray, NDArray]:
-        mixtures, config = self.mixtures, self.config
-        deviations, out = np.empty_like(mixtures.weights), np.empty(picture.shape[:2], np.float32)
-        slot_deviations(
-            picture, mixtures.weights, mixtures.means, mixtures.variances, mixtures.kept, config.deviation_floor**2,
-            deviations,
-        )  # fmt: skip
-        pooled_scores(
-            deviations, mixtures.kept, self.counts, self.totals, OFFSETS, self.partners,
-            config.threshold**2, config.surprise_limit, out,
-        )  # fmt: skip
-        score, nearest = super()._judged(picture)
-        return np.sqrt(out * self._as_deviation(score)), nearest
+    @property
+    def gaussian(self) -> GaussianBackground:
+        """Of each pixel's heaviest look, as the scene was learnt."""
+        if self._gaussian is None:
+            mean, deviation = self.mixtures.heaviest((slice(None), slice(None)))
+            self._gaussian = GaussianBackground(mean, deviation**2, GaussianConfig(sd_floor=self.config.deviation_floor))
+        return self._gaussian
+
+    def learn(self, image: NDArray) -> None:
+        """Learn all of a picture."""
+        super().learn(image)
+        self._gaussian = None
+
+    def score(self, image: NDArray) -> NDArray:
+        """(H, W) float32, standard deviations; learns nothing."""
+        picture = self._checked(image)
+        picture = self._light.taken_out(picture, self._field(picture))
+        return self._larger(picture, self._judged(picture)[0])
+
+    def apply(self, image: NDArray) -> NDArray:
+        """Foreground (H, W) bool; learns what is background to the spatial model."""
+        picture = self._followed(self._checked(image))
+        score, nearest = self._judged(picture)
+        mask = self._cleaned(self._larger(picture, score) > self.config.threshold)
+        self._learn(picture, nearest, self._learnt(self._cleaned(score > self.config.learnt_threshold), picture))
+        return mask
+
+    def _larger(self, picture: NDArray, score: NDArray) -> NDArray:
+        """(H, W) float32: the deviation of the spatial model's score (H, W), or the Gaussian's where that is larger."""
+        deviation = self.config.gaussian_weight * self.gaussian.score(picture)
+        return np.maximum(self._as_deviation(score), np.where(self.calm, deviation, np.float32(0.0)))
+
+    def _learnt(self, mask: NDArray, picture: NDArray) -> NDArray:
+        learnt, mean = super()._learnt(mask, picture), self.gaussian.mean
+        rate = np.where(mask, np.float32(1.0), np.float32(self.config.update_rate)) * learnt
+        mean += rate[..., None] * (picture - mean)
+        return learnt
 
     def _as_deviation(self, score: NDArray) -> NDArray:
         """(H, W) float32: root mean square over the channels, in standard deviations, at which the pixel's densities,

@@ -146,9 +146,16 @@ class SpatialBackground:
         """Foreground (H, W) bool; learns the background of the picture."""
         picture = self._followed(self._checked(image))
         score, nearest = self._judged(picture)
-        mask = close_open(score > self.config.threshold, self.config.closing, self.config.opening)
-        self._learn(picture, nearest, self._gate.learnt(mask, picture) & ~beside(mask, FRINGE))
+        mask = self._cleaned(score > self.config.threshold)
+        self._learn(picture, nearest, self._learnt(mask, picture))
         return mask
+
+    def _cleaned(self, mask: NDArray) -> NDArray:
+        return close_open(mask, self.config.closing, self.config.opening)
+
+    def _learnt(self, mask: NDArray, picture: NDArray) -> NDArray:
+        """(H, W) bool: what of a picture, whose foreground is `mask`, is learnt."""
+        return self._gate.learnt(mask, picture) & ~beside(mask, FRINGE)
 
     def _judged(self, picture: NDArray) -> tuple[NDArray, NDArray]:
         """(H, W) float32, the score; (H, W) int8, the component that each pixel matches."""
