@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from muybridge._kernels.deviations import pooled_scores, slot_deviations
 from muybridge._kernels.mixture import mixture_look, mixture_nearest, mixture_scores, mixture_update
 from muybridge._kernels.pairs import choose_partners, pair_scores, pair_update
 from muybridge.segmentation.spatial import OFFSETS
@@ -188,30 +187,3 @@ def test_counts_that_have_grown_large_are_made_small_again() -> None:
         pair_update(counts, totals, np.array([(5, 0)]), matched, fresh, 1 / 2)
         assert 0 < totals[0, 0, 0] < 1e31
     np.testing.assert_allclose(counts[0, 0, 2, :2, 0] / totals[0, 0, 0], [1 / 3, 2 / 3], rtol=1e-5)
-
-
-@pytest.mark.parametrize("pictures", PICTURES)
-def test_deviations_and_pooled_scores(pictures: int) -> None:
-    """The nearest component, where those that do not go with what the partners show lie further."""
-    floor, match, limit = 16.0, 9.0, 3.0
-    counts, totals = learnt_pairs(0.02, pictures)
-    information, partners = np.zeros((len(OFFSETS), H, W), np.float32), np.zeros((H, W, 2), np.int8)
-    choose_partners(counts, OFFSETS, 0, 1, information, partners)
-    found, out = np.empty((H, K, W), np.float32), np.empty((H, W), np.float32)
-    slot_deviations(MADE.image, MADE.weights, MADE.means, MADE.variances, MADE.kept, floor, found)
-    pooled_scores(found, MADE.kept, counts, totals, OFFSETS, partners, match, limit, out)
-    raised = 0
-    for y, x in np.ndindex(H, W):
-        kept = {k for k in range(K) if MADE.kept[y, x] >> k & 1}
-        own = literal.deviations(MADE.image[y, x].astype(float), MADE.weights[y, :, x],
-                                 MADE.means[y, :, :, x], MADE.variances[y, :, :, x], kept, floor)  # fmt: skip
-        np.testing.assert_allclose(found[y, :, x], own, rtol=SINGLE)
-        cost = own.copy()
-        for n in partners[y, x][partners[y, x] >= 0] if len(kept) > 1 else ():
-            matrix, (qy, qx) = matrix_of(counts, int(n), y, x)
-            shown = int(found[qy, :, qx].argmin())
-            if found[qy, shown, qx] <= match:
-                cost += [2 * literal.surprise(matrix, k, shown, limit) for k in range(K)]
-        np.testing.assert_allclose(out[y, x], np.sqrt(cost.min()), rtol=1e-3)
-        raised += cost.min() > own.min() + 0.1
-    assert raised > 0

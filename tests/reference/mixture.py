@@ -95,23 +95,6 @@ def mutual_information(counts: np.ndarray) -> float:
     return float((weights[seen] * np.log(weights[seen] / apart[seen])).sum())
 
 
-def deviations(
-    colour: np.ndarray, weights: np.ndarray, means: np.ndarray, variances: np.ndarray, kept: set[int], floor: float
-) -> np.ndarray:
-    """(K,): squared deviations, the largest over the channels, by no more than the heaviest's variance."""
-    spread = np.maximum(np.minimum(variances, variances[weights.argmax()]), floor)
-    largest = ((colour - means) ** 2 / spread).max(axis=1)
-    return np.where([k in kept for k in range(len(weights))], largest, np.inf)
-
-
-def surprise(counts: np.ndarray, k: int, shown: int, limit: float) -> float:
-    """-log P(k | the partner's component `shown`), at most `limit`; counts (K, K): own component, the other's."""
-    seen = counts[:, shown]
-    if not seen.any():
-        return 0.0
-    return min(limit, -np.log(max(seen[k] / seen.sum(), LEAST)))
-
-
 def light(field: np.ndarray, shape: tuple[int, int]) -> np.ndarray:
     """(H, W, C): the gain of a field (6, C), a quadratic of the place, which goes from -1 to 1 over the picture."""
     y, x = np.meshgrid(np.linspace(-1, 1, shape[0]), np.linspace(-1, 1, shape[1]), indexing="ij")

@@ -76,7 +76,9 @@ class AutoBackground(SpatialBackground):
         """Of each pixel's heaviest look, as the scene was learnt."""
         if self._gaussian is None:
             mean, deviation = self.mixtures.heaviest((slice(None), slice(None)))
-            self._gaussian = GaussianBackground(mean, deviation**2, GaussianConfig(sd_floor=self.config.deviation_floor))
+            self._gaussian = GaussianBackground(
+                mean, deviation**2, GaussianConfig(sd_floor=self.config.deviation_floor)
+            )
         return self._gaussian
 
     def learn(self, image: NDArray) -> None:
