@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from muybridge._kernels.mixture import mixture_look, mixture_nearest, mixture_scores, mixture_update
+from muybridge._kernels.mixture import calm_deviations, mixture_look, mixture_nearest, mixture_scores, mixture_update
 from muybridge._kernels.pairs import choose_partners, pair_scores, pair_update
 from muybridge.segmentation.spatial import OFFSETS
 from reference import mixture as literal
@@ -187,3 +187,20 @@ def test_counts_that_have_grown_large_are_made_small_again() -> None:
         pair_update(counts, totals, np.array([(5, 0)]), matched, fresh, 1 / 2)
         assert 0 < totals[0, 0, 0] < 1e31
     np.testing.assert_allclose(counts[0, 0, 2, :2, 0] / totals[0, 0, 0], [1 / 3, 2 / 3], rtol=1e-5)
+
+
+SOME = 0.4
+"""Of the weight: some pixels have a component of more."""
+
+
+@pytest.mark.parametrize("calm", [0.0, SOME, 1.1])
+def test_deviations_of_the_heaviest_component_where_it_is_calm(calm: float) -> None:
+    found, floor = np.empty((H, W), np.float32), 16.0
+    calm_deviations(MADE.image, MADE.weights, MADE.means, MADE.variances, calm, floor, found)
+    for y, x in np.ndindex(H, W):
+        k = int(MADE.weights[y, :, x].argmax())
+        off = MADE.image[y, x].astype(float) - MADE.means[y, k, :, x]
+        wanted = np.sqrt((off**2 / np.maximum(MADE.variances[y, k, :, x], floor)).max())
+        np.testing.assert_allclose(found[y, x], wanted * (MADE.weights[y, k, x] >= calm), rtol=SINGLE)
+    share = (found > 0).mean()
+    assert share == {0.0: 1.0, 1.1: 0.0}[calm] if calm != SOME else 0 < share < 1

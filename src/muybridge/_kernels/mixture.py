@@ -180,6 +180,42 @@ def _over_rows_scores(image, weights, means, variances, kept, out):
 
 
 @vector_kernel
+def _keep_larger(colours, means, variances, floor, out):
+    for x in range(out.shape[0]):
+        off = colours[x] - means[x]
+        out[x] = max(out[x], off * off / max(variances[x], floor))
+
+
+@vector_kernel
+def _keep_heavier(weights, squared, heaviest, out):
+    for x in range(out.shape[0]):
+        out[x] = squared[x] if weights[x] > heaviest[x] else out[x]
+        heaviest[x] = max(heaviest[x], weights[x])
+
+
+@vector_kernel
+def _roots_where_calm(heaviest, calm, out):
+    for x in range(out.shape[0]):
+        out[x] = np.float32(math.sqrt(out[x])) if heaviest[x] >= calm else _0
+
+
+@parallel_kernel
+def _over_rows_deviations(image, weights, means, variances, calm, floor, out):
+    height, slots, width = weights.shape
+    for row in numba.prange(height):
+        y = np.int64(row)
+        colours, squared = np.empty((image.shape[2], width), np.float32), np.empty(width, np.float32)
+        heaviest = np.full(width, -_1)
+        row_colours(image, y, colours)
+        for k in range(slots):
+            squared[:] = _0
+            for c in range(image.shape[2]):
+                _keep_larger(colours[c], means[y, k, c], variances[y, k, c], floor, squared)
+            _keep_heavier(weights[y, k], squared, heaviest, out[y])
+        _roots_where_calm(heaviest, calm, out[y])
+
+
+@vector_kernel
 def _decay(weights, matched, rate):
     for x in range(weights.shape[0]):
         weights[x] *= _1 - rate if matched[x] >= 0 else _1
@@ -313,6 +349,16 @@ def mixture_look(image, weights, means, variances, kept, limit, nearest, squares
 def mixture_scores(image, weights, means, variances, kept, out):
     """-log of (2.1) over evenly spread colours, nats, into out (H, W) float32; the rest as for `mixture_look`."""
     _over_rows_scores(image, weights, means, variances, kept, out)
+
+
+def calm_deviations(image, weights, means, variances, calm, floor, out):
+    """Deviation from each pixel's heaviest component, the largest over the channels; 0 where that has less weight than
+    `calm`.
+
+    floor : least variance
+    out : (H, W) float32, filled; the rest as for `mixture_nearest`
+    """
+    _over_rows_deviations(image, weights, means, variances, np.float32(calm), np.float32(floor), out)
 
 
 def mixture_update(

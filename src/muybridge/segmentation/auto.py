@@ -2,13 +2,12 @@
 
 Zhao (2009, 6.1) finds a single Gaussian better in calm places and the spatial model better where the background
 changes, and leaves the choice to future work. Here both judge. The spatial model's score (3.1), of 1 + M densities, is
-taken for the deviation at which each of them would have fallen as far. Where one look holds `calm` of a pixel's weight,
-its Gaussian (2.3, 2.4) has a deviation too, the largest over the channels, and the larger of the two counts, in
-standard deviations.
+taken for the deviation at which each of them would have fallen as far. Where one component holds `calm` of a pixel's
+weight, it has a deviation too, as a Gaussian by itself (2.3, 2.4), the largest over the channels. The larger of the two
+counts, in standard deviations.
 
-The Gaussian is that of the pixel's heaviest component as the scene was learnt. From then on its mean follows what is
-learnt of the background, and its spread stays: what people leave behind in a mixture, their shadows and whoever stood
-there, it does not take in. Where foreground is learnt, as a door that was opened, it goes over to that.
+That Gaussian is the pixel's heaviest component. What people leave behind in the others, their shadows and whoever stood
+there, it knows nothing of; after a door was opened a pixel is not calm for a while, and the spatial model judges alone.
 """
 
 from __future__ import annotations
@@ -21,7 +20,6 @@ from numpy.typing import NDArray
 
 from muybridge._kernels.mixture import TAIL
 from muybridge.errors import InputError
-from muybridge.segmentation.gaussian import GaussianBackground, GaussianConfig
 from muybridge.segmentation.pictures import learn_each
 from muybridge.segmentation.spatial import SpatialBackground, SpatialConfig
 
@@ -30,7 +28,7 @@ from muybridge.segmentation.spatial import SpatialBackground, SpatialConfig
 class AutoConfig(SpatialConfig):
     """Settings of the spatial model, and of the Gaussian beside it."""
 
-    threshold: float = 7.0
+    threshold: float = 5.0
     """Standard deviations."""
     learnt_threshold: float = 0.0
     """Nats of the spatial model's score, above which nothing is learnt as background: its own threshold."""
@@ -58,33 +56,11 @@ class AutoBackground(SpatialBackground):
 
     def __init__(self, shape: tuple[int, ...], config: AutoConfig | None = None) -> None:
         super().__init__(shape, config or AutoConfig())
-        self._gaussian: GaussianBackground | None = None  # none while the scene is learnt
 
     @classmethod
     def train(cls, pictures: Iterable[NDArray], config: SpatialConfig | None = None) -> AutoBackground:
         """Learn from pictures, each (H, W) or (H, W, 3) uint8, all of one size; people may pass through."""
         return learn_each(pictures, lambda shape: cls(shape, config))  # type: ignore[arg-type]
-
-    @property
-    def calm(self) -> NDArray:
-        """(H, W) bool: where the Gaussian has a say."""
-        heaviest: NDArray = self.mixtures.weights.max(axis=1)
-        return heaviest >= self.config.calm
-
-    @property
-    def gaussian(self) -> GaussianBackground:
-        """Of each pixel's heaviest look, as the scene was learnt."""
-        if self._gaussian is None:
-            mean, deviation = self.mixtures.heaviest((slice(None), slice(None)))
-            self._gaussian = GaussianBackground(
-                mean, deviation**2, GaussianConfig(sd_floor=self.config.deviation_floor)
-            )
-        return self._gaussian
-
-    def learn(self, image: NDArray) -> None:
-        """Learn all of a picture."""
-        super().learn(image)
-        self._gaussian = None
 
     def score(self, image: NDArray) -> NDArray:
         """(H, W) float32, standard deviations; learns nothing."""
@@ -97,19 +73,14 @@ class AutoBackground(SpatialBackground):
         picture = self._followed(self._checked(image))
         score, nearest = self._judged(picture)
         mask = self._cleaned(self._larger(picture, score) > self.config.threshold)
-        self._learn(picture, nearest, self._learnt(self._cleaned(score > self.config.learnt_threshold), picture))
+        self._learn_around(self._cleaned(score > self.config.learnt_threshold), picture, nearest)
         return mask
 
     def _larger(self, picture: NDArray, score: NDArray) -> NDArray:
         """(H, W) float32: the deviation of the spatial model's score (H, W), or the Gaussian's where that is larger."""
-        deviation = self.config.gaussian_weight * self.gaussian.score(picture)
-        return np.maximum(self._as_deviation(score), np.where(self.calm, deviation, np.float32(0.0)))
-
-    def _learnt(self, mask: NDArray, picture: NDArray) -> NDArray:
-        learnt, mean = super()._learnt(mask, picture), self.gaussian.mean
-        rate = np.where(mask, np.float32(1.0), np.float32(self.config.update_rate)) * learnt
-        mean += rate[..., None] * (picture - mean)
-        return learnt
+        config = self.config
+        gaussian = self.mixtures.calm_deviations(picture, config.calm, config.deviation_floor)
+        return np.maximum(self._as_deviation(score), np.float32(config.gaussian_weight) * gaussian)
 
     def _as_deviation(self, score: NDArray) -> NDArray:
         """(H, W) float32: root mean square over the channels, in standard deviations, at which the pixel's densities,

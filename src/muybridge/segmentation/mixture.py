@@ -31,7 +31,14 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from muybridge._kernels.mixture import MOST_SLOTS, mixture_look, mixture_nearest, mixture_scores, mixture_update
+from muybridge._kernels.mixture import (
+    MOST_SLOTS,
+    calm_deviations,
+    mixture_look,
+    mixture_nearest,
+    mixture_scores,
+    mixture_update,
+)
 from muybridge.errors import InputError
 from muybridge.segmentation.cleaning import check_squares, close_open
 from muybridge.segmentation.pictures import check_same_shape, learn_each
@@ -148,6 +155,13 @@ class PixelMixtures:
         """(H, W) float32, nats: -log of (2.1) over evenly spread colours."""
         out = np.empty(self.kept.shape, np.float32)
         mixture_scores(picture, self.weights, self.means, self.variances, self.kept, out)
+        return out
+
+    def calm_deviations(self, picture: NDArray, calm: float, floor: float) -> NDArray:
+        """(H, W) float32, standard deviations of at least `floor`, grey values: how far each pixel is from its heaviest
+        component, the largest over the channels; 0 where that has less of the weight than `calm`."""
+        out = np.empty(self.kept.shape, np.float32)
+        calm_deviations(picture, self.weights, self.means, self.variances, calm, floor**2, out)
         return out
 
     def learn(self, picture: NDArray, nearest: NDArray, learnt: NDArray) -> NDArray:

@@ -147,15 +147,15 @@ class SpatialBackground:
         picture = self._followed(self._checked(image))
         score, nearest = self._judged(picture)
         mask = self._cleaned(score > self.config.threshold)
-        self._learn(picture, nearest, self._learnt(mask, picture))
+        self._learn_around(mask, picture, nearest)
         return mask
 
     def _cleaned(self, mask: NDArray) -> NDArray:
         return close_open(mask, self.config.closing, self.config.opening)
 
-    def _learnt(self, mask: NDArray, picture: NDArray) -> NDArray:
-        """(H, W) bool: what of a picture, whose foreground is `mask`, is learnt."""
-        return self._gate.learnt(mask, picture) & ~beside(mask, FRINGE)
+    def _learn_around(self, mask: NDArray, picture: NDArray, nearest: NDArray) -> None:
+        """Learn what of a picture may be learnt, whose foreground is `mask`."""
+        self._learn(picture, nearest, self._gate.learnt(mask, picture) & ~beside(mask, FRINGE))
 
     def _judged(self, picture: NDArray) -> tuple[NDArray, NDArray]:
         """(H, W) float32, the score; (H, W) int8, the component that each pixel matches."""
