@@ -85,11 +85,22 @@ class TestChanging:
 
 class TestLearnt:
     def test_a_thing_that_rests_is_background_to_both(self) -> None:
-        """By then the pixels have two looks, and neither is four fifths of what they showed."""
+        """As soon as it is to the spatial model, though most of what the pixels showed was another look."""
         model, rng = calm(replace(CONFIG, rest=10, closing=3, opening=5)), np.random.default_rng(6)
-        masks = [model.apply(with_a_thing(rng, (100, 160, 100)))[PLACE] for _ in range(60)]
+        masks = [model.apply(with_a_thing(rng, (100, 160, 100)))[PLACE] for _ in range(17)]
         assert masks[5].all() and not masks[-1].any()
-        assert not model.apply(shown(rng, 100))[PLACE].any()
+        assert model.mixtures.weights.max(axis=1)[PLACE].min() > CONFIG.calm
+
+    def test_when_it_goes_away_the_gaussian_judges_again(self) -> None:
+        model, rng = calm(replace(CONFIG, rest=10, closing=3, opening=5)), np.random.default_rng(6)
+        pictures = [with_a_thing(rng, (100, 160, 100)) for _ in range(17)]
+        for picture in (*pictures, shown(rng, 100)):
+            model.apply(picture)
+        without = replace(model.config, gaussian_weight=0.0)
+        picture = with_a_thing(rng, (100, 111, 100))  # 2.75 of its deviations of 4
+        score = model.score(picture)[PLACE]
+        model.config = without
+        assert score.min() > 1.25 * 2 and (score > model.score(picture)[PLACE]).mean() > 0.5
 
     def test_it_learns_what_the_spatial_model_learns(self) -> None:
         """Whatever the Gaussian and the threshold say."""

@@ -7,7 +7,8 @@ weight, it has a deviation too, as a Gaussian by itself (2.3, 2.4), the largest 
 counts, in standard deviations.
 
 That Gaussian is the pixel's heaviest component. What people leave behind in the others, their shadows and whoever stood
-there, it knows nothing of; after a door was opened a pixel is not calm for a while, and the spatial model judges alone.
+there, it knows nothing of. Where foreground was learnt, as a door that was opened, the spatial model judges alone until
+the pixel shows its heaviest component again.
 """
 
 from __future__ import annotations
@@ -56,6 +57,7 @@ class AutoBackground(SpatialBackground):
 
     def __init__(self, shape: tuple[int, ...], config: AutoConfig | None = None) -> None:
         super().__init__(shape, config or AutoConfig())
+        self._new = np.zeros(shape[:2], bool)  # shows what was learnt as foreground
 
     @classmethod
     def train(cls, pictures: Iterable[NDArray], config: SpatialConfig | None = None) -> AutoBackground:
@@ -80,7 +82,14 @@ class AutoBackground(SpatialBackground):
         """(H, W) float32: the deviation of the spatial model's score (H, W), or the Gaussian's where that is larger."""
         config = self.config
         gaussian = self.mixtures.calm_deviations(picture, config.calm, config.deviation_floor)
-        return np.maximum(self._as_deviation(score), np.float32(config.gaussian_weight) * gaussian)
+        gaussian *= np.float32(config.gaussian_weight) * ~self._new
+        return np.maximum(self._as_deviation(score), gaussian)
+
+    def _learn_around(self, mask: NDArray, picture: NDArray, nearest: NDArray) -> None:
+        super()._learn_around(mask, picture, nearest)
+        of = self.mixtures
+        self._new |= mask & ((of.matched >= 0) | (of.fresh >= 0))
+        self._new &= of.matched != of.weights.argmax(axis=1)
 
     def _as_deviation(self, score: NDArray) -> NDArray:
         """(H, W) float32: root mean square over the channels, in standard deviations, at which the pixel's densities,
