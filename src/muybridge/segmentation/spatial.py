@@ -33,8 +33,8 @@ Differences from the paper:
   the distance of the partners, and counts wide shadows twice where a thin limb counts once. -log P(ci) counts up to
   `partner_limit`; infinity is (3.1) as printed.
 
-Cost: O(M) a pixel to test where it and its partners each show one component clearly, O(K^2 M) at most; O(pairs) to
-learn; mutual information is measured for some rows at each picture.
+Cost: O(K^2) for each pair of each pixel to test, as vector code along rows, but for components that none of a row has;
+O(pairs) to learn; mutual information is measured for some rows at each picture.
 """
 
 from __future__ import annotations
