@@ -80,7 +80,7 @@ class TestChanging:
         looks = np.full((H, W), LOOKS[0])
         looks[here] = LOOKS[1]
         mask = model.apply(shown(np.random.default_rng(4), looks))
-        assert mask[here] and mask.sum() < 10  # who has it for a partner, two each of eight neighbours, may be blamed
+        assert mask[here] and mask.sum() <= 1 + 8  # those who have it for a partner may be blamed
 
 
 class TestLearnt:
@@ -97,10 +97,11 @@ class TestLearnt:
         for picture in (*pictures, shown(rng, 100)):
             model.apply(picture)
         without = replace(model.config, gaussian_weight=0.0)
-        picture = with_a_thing(rng, (100, 111, 100))  # 2.75 of its deviations of 4
+        picture = with_a_thing(rng, (100, 111, 100))  # 2.75 deviations of 4, less five of a mean of 40: 0.4
         score = model.score(picture)[PLACE]
         model.config = without
-        assert score.min() > 1.25 * 2 and (score > model.score(picture)[PLACE]).mean() > 0.5
+        assert score.min() > 1.25 * 2.35
+        assert (score > model.score(picture)[PLACE]).all()
 
     def test_it_learns_what_the_spatial_model_learns(self) -> None:
         """Whatever the Gaussian and the threshold say."""
