@@ -97,7 +97,8 @@ def _product(firsts, seconds, offsets, partners, y, x, begin, end):
         partner = np.int64(partners[y, x, n])
         if partner >= 0:
             d = partner >> 1
-            product *= seconds[d, y - offsets[d, 0], x - offsets[d, 1]] if partner & 1 else firsts[d, y, x]
+            joint = seconds[d, y - offsets[d, 0], x - offsets[d, 1]] if partner & 1 else firsts[d, y, x]
+            product *= float(joint)
     return product
 
 
