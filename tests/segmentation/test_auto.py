@@ -118,7 +118,10 @@ class TestLearnt:
         np.testing.assert_array_equal(auto.counts, spatial.counts)
 
 
-@pytest.mark.parametrize("setting", [{"calm": 1.5}, {"gaussian_weight": -1.0}, {"deviation_floor": 0.0}])
+WRONG = [{"calm": 1.5}, {"gaussian_weight": -1.0}, {"deviation_floor": 0.0}, {"learnt_threshold": np.nan}]
+
+
+@pytest.mark.parametrize("setting", WRONG)
 def test_settings_that_mean_nothing(setting: dict[str, float]) -> None:
     (name,) = setting
     with pytest.raises(InputError, match=name):

@@ -42,6 +42,8 @@ class AutoConfig(SpatialConfig):
 
     def __post_init__(self) -> None:
         super().__post_init__()
+        if not np.isfinite(self.learnt_threshold):
+            raise InputError("auto background learnt_threshold", expected="nats", got=f"{self.learnt_threshold:g}")
         if not 0 <= self.calm <= 1:
             raise InputError("auto background calm", expected="0 to 1", got=f"{self.calm:g}")
         if not 0 <= self.gaussian_weight < np.inf:
