@@ -77,10 +77,8 @@ def main() -> None:
     boxes = read_boxes(arguments.boxes)
     for name in arguments.models:
         outside, covered, levels = curve(scores_of(name, pictures, rate, settings[name]), boxes, first).T
-        at = [
-            f"{np.interp(x, outside, covered):.3f} at {x:.2f} % ({np.interp(x, outside, levels):.1f})" for x in OUTSIDE
-        ]
-        print(f"{name:9s}", *at, flush=True)
+        told = ((at, np.interp(at, outside, covered), np.interp(at, outside, levels)) for at in OUTSIDE)
+        print(f"{name:9s}", *(f"{share:.3f} at {at:.2f} % ({level:.1f})" for at, share, level in told), flush=True)
 
 
 if __name__ == "__main__":
